@@ -25,19 +25,13 @@ CONCAVITIES = 0.02, 0.03, 0.05, 0.1, 0.2, 0.4
 RESOLUTIONS = 8, 16, 32, 64, 128, 256
 CLEARANCES = 0.0, 0.005, 0.01, 0.02, 0.03, 0.04
 TURNS = 5  # measurements of each time
-PEAKED = 1  # dB above both ends of a curve, from which its middle counts as a maximum
 TITLE = "Settings of convex shadows"
-PEAK = "The PSNR is highest at a middle concavity.", "Figure 9.8", "at about 40 %, on Armadillo"
 FEWER = "The larger the concavity, the fewer the parts.", "Figure 9.8", "as a logarithm"
 FASTER = "The larger the concavity, the higher the frame rate.", "Figure 9.8", "a drawing"
 PRINTED, WITHOUT, OURS = "printed", "without clearance", "brdfkit"
 TEXT = f"""{SETTING} The concavity is the largest distance between a part and its hull. *Clearance*:
 a part that a ray enters nearer than this, over half of the mesh's longest side, does not shade; the
 thesis has none. {PRINTED_FORM}"""
-WHY = f"""The thesis's 40 % are of HACD's own measure, ours a length, so that only the form of the
-curve is compared; confirmed where it rises {PEAKED} dB above both ends. Parts shade themselves
-where they overlap, as the thesis says. The clearance takes that away: then more of them are
-better."""
 
 
 @in_turn
@@ -45,7 +39,7 @@ def check_claims(sources, report):
     """Check the claims on the settings of convex shadows; return their section of the page."""
     use_variant()
     if not can_decompose():
-        missing = [Claim(*c, "", NOT_RUN, NO_COACD) for c in (PEAK, FEWER, FASTER)]
+        missing = [Claim(*c, "", NOT_RUN, NO_COACD) for c in (FEWER, FASTER)]
         return Section(TITLE, TEXT, missing)
     name, study = make_swept_study(sources)
     steps, done = 3 * len(CONCAVITIES) + len(RESOLUTIONS) + len(CLEARANCES), 0
@@ -80,12 +74,7 @@ def check_claims(sources, report):
         make_row_table("texels of a map", RESOLUTIONS, sides),
         make_row_table("clearance", CLEARANCES, lengths),
     ]
-    claims = [
-        claim_peak("the thesis's form", by[PRINTED]),
-        claim_peak("brdfkit's form", by[OURS]),
-        claim_fewer(counts),
-        claim_faster(relative),
-    ]
+    claims = [claim_fewer(counts), claim_faster(relative)]
     picture = Picture("convex_settings", draw_curves(by, counts))
     return Section(TITLE, TEXT, claims, tables, [picture])
 
@@ -94,19 +83,6 @@ def make_row_table(label, settings, decibels):
     """Return a table of one row: PSNR by setting."""
     row = "PSNR [dB]", *(f"{x:.1f}" for x in decibels)
     return Table((label, *(f"{s:g}" for s in settings)), [row])
-
-
-def claim_peak(form, decibels):
-    """Claim that the PSNR of a form, in `decibels` by concavity, is highest at a middle one."""
-    first, *_, last = decibels
-    above = max(decibels) - max(first, last)
-    return Claim(
-        f"{PEAK[0][:-1]}: {form}.",
-        *PEAK[1:],
-        f"at {CONCAVITIES[decibels.index(max(decibels))]:g}, {above:.1f} dB above the ends",
-        to_verdict(above >= PEAKED),
-        WHY,
-    )
 
 
 def claim_fewer(counts):
