@@ -12,13 +12,14 @@ two thirds of the time of cumulative sums, and far less memory; but its blocks, 
 worse pictures at every number of them tried, by 0.7 dB or more; with brdfkit's linear densities
 they are as good. To prepare blocks takes far longer. *Convex parts*: they take the printed number
 of look-ups, are exact by their true planes, need fewer reads and less time than height fields, and
-move cheaply; height fields have the better pictures. As printed, parts shade themselves, and few
-meshes reach the 39 dB of the thesis; with brdfkit's clearance all do. A middle concavity was not
-found to be best. *Lobes*: kernels show no edges between views, mixtures do, and kernels are faster
-if they are few; 16 of them come near the printed speed and number of good scenes. But the thesis's
-filtered sampling is worse than any that was tried, so that kernels as printed are almost nowhere
-the best; brdfkit's, which are as wide together as their lobe, are. What surprised: interpolation
-between views takes the edges of mixtures away, and adds 4 to 18 dB.
+move cheaply; height fields have the better pictures. As printed, parts shade themselves: few meshes
+reach the 39 dB of the thesis, and a middle concavity is best on four of five. With brdfkit's
+clearance all reach them, and the more parts the better. *Lobes*: kernels show no edges between
+views, mixtures do, and kernels are faster if they are few; 16 of them come near the printed speed
+and number of good scenes. But the thesis's filtered sampling is worse than any that was tried, so
+that kernels as printed are almost nowhere the best; brdfkit's, which are as wide together as their
+lobe, are. What surprised: interpolation between views takes the edges of mixtures away, and adds 4
+to 18 dB.
 
 The thesis has no tables; its figures' numbers are in the text, or lost. It names no BRDF, no block
 count, no samples per pixel, no resolution and no definition of PSNR, and its times are of a
@@ -48,6 +49,7 @@ PARTS = (
     "convex_times",
     "convex_pictures",
     "convex_settings",
+    "convex_concavity",
     "convex_gallery",
     "moving_parts",
     "lobe_scenes",

@@ -2,7 +2,12 @@
 
 import numpy as np
 from brdfkit.theses.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES
-from brdfkit.theses.ergun2015.printed_forms import name_kernels, name_sampling, name_warped
+from brdfkit.theses.ergun2015.printed_forms import (
+    name_kernels,
+    name_mixture,
+    name_sampling,
+    name_warped,
+)
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
@@ -13,6 +18,7 @@ SHOWN = (
     name_warped(0.5, "lobes"),
     name_kernels(8, 0.5),
     name_kernels(32, 0.5),
+    name_mixture(0.5),
     name_sampling(64, 1),
 )
 

@@ -8,7 +8,7 @@ lobe's map, which Wang convolves with lobes and the thesis also looks up in mips
 import math
 from itertools import product
 
-from brdfkit.theses.ergun2015.printed_lobes import PrintedLobes
+from brdfkit.theses.ergun2015.printed_lobes import PrintedLobes, PrintedMixtures
 
 from brdfkit.lighting.filtering.bsdf_directions import OVERLAP
 from brdfkit.lighting.filtering.filtered_sampling import FilteredSampling
@@ -64,6 +64,8 @@ def make_printed_integrators(lights):
     shadings[name_warped(COVERAGE, "lobes")] = PrintedLobes(1), "lobes"
     for n, a in product(KERNELS, COVERAGES):
         shadings[name_kernels(n, a)] = PrintedLobes(n, a), "mips"
+    for a in COVERAGES:
+        shadings[name_mixture(a)] = PrintedMixtures(a), "mips"
     for n, b in product(DIRECTIONS, BIASES):
         shadings[name_sampling(n, b)] = PrintedSampling(n, b), "mips"
     found = {}
@@ -82,6 +84,11 @@ def name_warped(coverage, filter_):
 def name_kernels(count, coverage):
     """Return the label of kernels as printed."""
     return f"kde, printed: {count}, a = {coverage:g}"
+
+
+def name_mixture(coverage):
+    """Return the label of mixtures as printed."""
+    return f"gmm, printed: a = {coverage:g}"
 
 
 def name_sampling(count, bias):
