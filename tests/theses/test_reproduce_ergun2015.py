@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from brdfkit.theses.ergun2015 import (
+    convex_concavity,
     convex_gallery,
     convex_rays,
     convex_settings,
@@ -15,11 +16,17 @@ from brdfkit.theses.ergun2015 import (
     map_samplers,
     moving_parts,
     printed_forms,
+    printed_lobes,
     sample_times,
     shapes,
 )
 from brdfkit.theses.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES, make_ward_bsdf
-from brdfkit.theses.ergun2015.printed_lobes import split_as_printed, warp_lobe
+from brdfkit.theses.ergun2015.printed_lobes import (
+    PrintedLobes,
+    PrintedMixtures,
+    find_kernel_kappa,
+    warp_lobe,
+)
 from brdfkit.theses.ergun2015.printed_ray import enclose_in_sphere
 from brdfkit.theses.ergun2015.unshadowed import make_unshadowed_integrator
 
@@ -35,6 +42,7 @@ CONVEX = [
     "convex_times",
     "convex_pictures",
     "convex_settings",
+    "convex_concavity",
     "convex_gallery",
     "moving_parts",
 ]
@@ -95,6 +103,7 @@ def test_convex_parts_of_a_torus_at_a_small_size(llvm_variant, monkeypatch, tmp_
     settings = {"CONCAVITIES": (0.03, 0.2), "RESOLUTIONS": (8,), "CLEARANCES": (0.02,)}
     for name, value in settings.items():
         monkeypatch.setattr(convex_settings, name, value)
+    monkeypatch.setattr(convex_concavity, "CONCAVITIES", settings["CONCAVITIES"])
     monkeypatch.setattr(moving_parts, "MOVES", 2)
     monkeypatch.setattr(moving_parts, "FRAMES", 2)
     monkeypatch.setattr(convex_times, "TURNS", 2)
@@ -113,7 +122,7 @@ def test_convex_parts_of_a_torus_at_a_small_size(llvm_variant, monkeypatch, tmp_
         assert "models/alligator.obj.xz" in verdicts[f"No PSNR is below 39 dB: {form}."].why
     assert verdicts["The larger the concavity, the fewer the parts."].ours == "8 4"
     assert seen == sorted(seen)
-    assert len(found.written) == 6
+    assert len(found.written) == 7
     assert "| torus |" in (tmp_path / "ergun2015.md").read_text(encoding="utf-8")
 
 
@@ -132,6 +141,15 @@ def test_the_verdicts_on_a_grid_follow_its_figures():
     grid = decibels(kde=falling - 20)
     assert lobe_scenes.claim_best(grid).verdict == "not confirmed"
     assert lobe_scenes.claim_matte(grid).verdict == "not confirmed"
+
+
+@pytest.mark.quick
+def test_a_middle_concavity_is_judged_by_mesh():
+    """It counts from 1 dB above both ends."""
+    curves = {"one": [30, 35, 40, 35, 34, 33], "two": [30, 35, 34, 33, 32, 31]}
+    found = convex_concavity.claim_peak("f", curves | {"three": [40, 40.5, 40, 39, 38, 37]}, "")
+    assert found.verdict == "holds where the mesh is not three"
+    assert "one at 0.05 by 7.0 dB" in found.ours
 
 
 @pytest.mark.quick
@@ -158,15 +176,15 @@ def test_the_verdicts_on_printed_forms_follow_their_grid():
 
 @pytest.mark.quick
 def test_the_printed_lobe_has_wards_height_and_its_kernels_the_published_width(llvm_variant):
-    """At the mirror direction it is BRDF × cosine; kernels of the digest's κ = 500."""
+    """At the mirror direction it is BRDF × cosine; kernels of the digest's κ = 500 and 5."""
     theta = np.radians([0, 30, 60])
-    axes, kappa, weights = warp_lobe(theta, 0.1, 0.4)
-    wo = from_angles(theta, 0)
+    kappa, weights = map(np.array, warp_lobe(llvm_variant.Float(np.cos(theta)), 0.1, 0.4))
+    axes, wo = from_angles(theta, np.pi), from_angles(theta, 0)
     value = eval_bsdf(make_ward_bsdf(0.1), wo, axes)[:, 0] - 0.1 / np.pi
     assert weights * density(axes, axes, kappa) == pytest.approx(value * axes[:, 2], rel=1e-3)
     assert weights == pytest.approx(0.4 * np.cos(theta), rel=1e-3)
-    _, kernels = split_as_printed(axes[:1], np.array([500.0]), 8)
-    assert kernels[0] == pytest.approx(np.full(8, 999.667))
+    kernels = np.array(find_kernel_kappa(llvm_variant.Float([500, 5]), 8))
+    assert kernels == pytest.approx([999.667, 9.6908], rel=1e-4)
 
 
 @pytest.mark.quick
@@ -218,18 +236,23 @@ def test_edges_are_judged_by_map_and_roughness():
     )
 
 
-def test_the_lobes_of_the_nearest_view_are_rendered(llvm_variant):
-    """The replaced look-up of views changes the picture, and is taken away again."""
-    made = find_scene("ball")(make_ward_bsdf(0.2), (16, 16))
+def test_printed_lobes_and_mixtures_light_a_ball_evenly(llvm_variant, monkeypatch):
+    """In even light, kernels reflect what their lobe does, and a mixture, nearer to Ward, less.
+
+    The nearest of three views shows as steps.
+    """
+    monkeypatch.setattr(printed_lobes, "VIEWS", 3)
+    bsdf = make_ward_bsdf(0.2)
+    made = find_scene("ball")(bsdf, (24, 24))
     light = llvm_variant.load_dict({"type": "constant"})
-    entries = {"type": "filtered_environment", "method": "warped", "resolution": 32}
-    lobes = llvm_variant.load_dict(entries).shading.fit_lobes(make_ward_bsdf(0.2))
-    between, nearest, again = (
-        lobe_views.render_with_lobes(made, light, llvm_variant.load_dict(entries), lobes, which)
-        for which in (False, True, False)
-    )
-    assert np.abs(nearest - between).max() > 1e-4
-    assert (again == between).all()
+    small = {"type": "filtered_environment", "resolution": 32}
+    monkeypatch.setattr(lobe_views, "make_integrator", lambda: llvm_variant.load_dict(small))
+    kinds = [PrintedLobes(1), PrintedLobes(8), PrintedMixtures()]
+    lobe, kernels, mixture = (lobe_views.render_by(made, light, kind) for kind in kinds)
+    assert kernels == pytest.approx(lobe, abs=1e-3)
+    middle = mixture[8:16, 8:16]
+    assert middle.mean() == pytest.approx(lobe[8:16, 8:16].mean(), rel=0.2)
+    assert len(np.unique(middle.round(2))) == 2 < len(np.unique(lobe[8:16, 8:16].round(2)))
 
 
 def test_the_truth_without_shadows_has_none(llvm_variant):

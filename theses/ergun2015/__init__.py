@@ -15,11 +15,11 @@ of look-ups, are exact by their true planes, need fewer reads and less time than
 move cheaply; height fields have the better pictures. As printed, parts shade themselves: few meshes
 reach the 39 dB of the thesis, and a middle concavity is best on four of five. With brdfkit's
 clearance all reach them, and the more parts the better. *Lobes*: kernels show no edges between
-views, mixtures do, and kernels are faster if they are few; 16 of them come near the printed speed
-and number of good scenes. But the thesis's filtered sampling is worse than any that was tried, so
-that kernels as printed are almost nowhere the best; brdfkit's, which are as wide together as their
-lobe, are. What surprised: interpolation between views takes the edges of mixtures away, and adds 4
-to 18 dB.
+views, mixtures do, and kernels are faster if they are few: 8 of them come near the printed number
+of good scenes, 16 near the printed speed. But the thesis's filtered sampling is worse than any that
+was tried, so that kernels as printed are seldom the best; brdfkit's, which are as wide together as
+their lobe, are. What surprised: interpolation between views takes the edges of mixtures away, and
+adds 4 to 18 dB.
 
 The thesis has no tables; its figures' numbers are in the text, or lost. It names no BRDF, no block
 count, no samples per pixel, no resolution and no definition of PSNR, and its times are of a
