@@ -7,7 +7,6 @@ from brdfkit.theses.kurt2007.curet import BISQUARE, NUMBERS, load_sample
 from brdfkit.theses.kurt2007.figure_5_1 import reweight_columns
 from brdfkit.theses.kurt2007.printed import SEVEN, read_printed_table
 from brdfkit.theses.kurt2007.quadratic_programming import fit_by_quadratic_programming
-from scipy.stats import t as student
 
 from brdfkit.core.jit.threads import use_one_thread
 from brdfkit.model import labels
@@ -16,6 +15,7 @@ from brdfkit.regression.solvers import SLSQP, LevenbergMarquardt
 from brdfkit.theses.claims import Claim, measure_cpu_seconds, to_verdict
 from brdfkit.theses.grid import judge_over_grid
 from brdfkit.theses.page import Section, Table
+from brdfkit.theses.timing import compare_times
 
 SECONDS = 30
 SAMPLES = NUMBERS[::3]
@@ -43,9 +43,9 @@ def check_claims(sources, report):
         for done, number in enumerate((SAMPLES[0], *SAMPLES)):
             times.append(_measure_fits(load_sample(sources, number)))
             report(done + 1, len(SAMPLES) + 1)
-    logs = {key: np.log([turn[key] for turn in times[1:]]) for key in times[0]}
+    times = {key: np.array([turn[key] for turn in times[1:]]) for key in times[0]}
     ratios = {
-        (name, solver, timed): _find_interval(logs[name, solver, timed] - logs[POLYNOMIAL, timed])
+        (name, solver, timed): compare_times(times[name, solver, timed], times[POLYNOMIAL, timed])
         for name in SEVEN
         for solver in SOLVERS
         for timed in (WHOLE, ALONE)
@@ -61,7 +61,9 @@ def check_claims(sources, report):
         for name in SEVEN
     ]
     heads = "times as long", "printed", *(f"{solver}, {timed}" for solver, timed in columns)
-    seconds = ", ".join(f"{np.exp(logs[POLYNOMIAL, t].mean()):.4f} s ({t})" for t in (WHOLE, ALONE))
+    seconds = ", ".join(
+        f"{np.exp(np.log(times[POLYNOMIAL, t]).mean()):.4f} s ({t})" for t in (WHOLE, ALONE)
+    )
     caption = f"The polynomial itself: printed {theirs[POLYNOMIAL]:.4f} s; ours {seconds}."
     table = Table(heads, lines, caption)
     return Section(
@@ -118,15 +120,8 @@ class Timed:
         return end
 
 
-def _find_interval(logs):
-    """Return the geometric mean of ratios by their logarithms (n,), and its 95 % interval."""
-    wide = student.ppf(0.975, len(logs) - 1) * logs.std(ddof=1) / np.sqrt(len(logs))
-    return tuple(float(np.exp(logs.mean() + side * wide)) for side in (0, -1, 1))
-
-
-def _format(interval):
-    value, low, high = interval
-    return f"{value:.2f} ({low:.2f} to {high:.2f})"
+def _format(ratio):
+    return f"{ratio.value:.2f} ({ratio.low:.2f} to {ratio.high:.2f})"
 
 
 def _claim_half(theirs, ratios):
@@ -134,8 +129,8 @@ def _claim_half(theirs, ratios):
     for solver in SOLVERS:
         for timed in (WHOLE, ALONE):
             of_all = [ratios[name, solver, timed] for name in SEVEN]
-            fastest[solver, timed] = min(of_all)
-            holds[solver, timed] = min(low for _, low, _ in of_all) >= LEAST
+            fastest[solver, timed] = min(of_all, key=lambda ratio: ratio.value)
+            holds[solver, timed] = min(ratio.low for ratio in of_all) >= LEAST
     ours, verdict = judge_over_grid(["rivals' search", "time"], holds)
     least = theirs[POLYNOMIAL]
     words = ", ".join(f"{_format(f)} ({s}, {t})" for (s, t), f in fastest.items())
@@ -157,14 +152,14 @@ def _claim_ratios(theirs, ratios):
 
     def count_alike(solver, timed):
         found = [(ratios[name, solver, timed], printed[name]) for name in SEVEN]
-        return sum(low * ALIKE >= p >= high / ALIKE for (_, low, high), p in found)
+        return sum(r.low * ALIKE >= p >= r.high / ALIKE for r, p in found)
 
     counts = {(s, t): count_alike(s, t) for s in SOLVERS for t in (WHOLE, ALONE)}
     return Claim(
         "The ratios of the times of SQP to those of bisquare, the searches alone.",
         "Table 9.4",
         ", ".join(f"{p:.1f}" for p in printed.values()),
-        ", ".join(f"{ratios[name, 'SQP', ALONE][0]:.1f}" for name in SEVEN),
+        ", ".join(f"{ratios[name, 'SQP', ALONE].value:.1f}" for name in SEVEN),
         to_verdict(counts["SQP", ALONE] == len(SEVEN)),
         f"Within a factor of {ALIKE}, with the whole interval: "
         + ", ".join(f"{n} of {len(SEVEN)} ({s}, {t})" for (s, t), n in counts.items())
