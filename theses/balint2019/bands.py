@@ -8,18 +8,22 @@ from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
 
 INVERSES = 2, 4, 8, 16, 32, 64, 128, 256  # of ε
 SMOOTH = 0.05  # a jump of the true shadow above this is an edge, not a band
+LEVEL = 1 / 256  # the grey level of a display; a larger jump is a band
 FEW = 0.01  # the share of pixels that may lie on a band
 
 
 class Light:
-    """The shadows of a light of one radius by marches with several ε, the bound of the error."""
+    """The shadows of a light of one radius by marches with several ε, the bound of the error.
 
-    def __init__(self, view, radius):
+    inverses : the values of 1 / ε, by default all.
+    """
+
+    def __init__(self, view, radius, inverses=None):
         field, cone = view.scene.field, view.make_cones(radius)
         model = read_shares(compute_dense_shadow(field, cone))
         self.truth = view.make_image(model)
         self.shares, self.errors, self.evaluations = {}, {}, {}
-        for n in INVERSES:
+        for n in inverses or INVERSES:
             shadow = compute_linear_shadow(field, cone, 1 / n)
             self.shares[n] = read_shares(shadow)
             self.errors[n] = view.make_image(self.shares[n] - model)
@@ -31,9 +35,9 @@ class Light:
             np.mean((measure_jumps(self.errors[n]) > height) & (measure_jumps(self.truth) < SMOOTH))
         )
 
-    def find_right_inverse(self, height):
-        """Return the least 1 / ε with hardly a pixel on a band, or None."""
-        return next((n for n in INVERSES if self.measure_banded_share(n, height) < FEW), None)
+    def find_right_inverse(self, height, few=FEW):
+        """Return the least 1 / ε with less than `few` of the pixels on a band, or None."""
+        return next((n for n in INVERSES if self.measure_banded_share(n, height) < few), None)
 
     def find_largest_error(self, n):
         """Return the largest error of a march with the error bound ε = 1 / n."""

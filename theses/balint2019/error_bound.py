@@ -15,21 +15,24 @@ from brdfkit.distance_fields.shadows.march import Rule
 from brdfkit.distance_fields.shadows.shadow import trace_shadow
 from brdfkit.distance_fields.shadows.tau import lit_disc_share
 from brdfkit.theses.claims import Claim, to_verdict
+from brdfkit.theses.grid import judge_over_grid
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 10
 CONES, PRINTED_CONES, SAMPLES = 4000, 300, 1000
 EPSILONS = 10, 30, 256  # values of 1 / ε
 ONE_SIDED = "base", "linear", "convex"  # marches that never make a shadow too dark
+MEASURES = "the mean", "that of 1 in 100", "the largest"
 ROUNDING = 2e-5  # the error of the dense search
 TEXT = f"""{CONES:,} cones towards lights of radius 0, 0.2, 1, 2 and 4, about 6 away; in each a
 random sphere, a random box and a ground. The error of a march is its share of the light less
-τ(r_min), by a dense search along the axis; it is told over ε, of ε = 1/10, 1/30 and 1/256 in both
+τ(r_min), by a dense search along the axis. Its unit is ε, of ε = 1/10, 1/30 and 1/256 in both
 directions."""
 FIXED = (
     "As printed, R_T becomes f over the radius of the cone of R_T itself, which is right for the "
     "first time only; and algorithm 4 ends at R_T = e, at half shadow. Here R_T is f over the "
-    "radius of the whole cone, and the end is e - 1."
+    "radius of the whole cone, and the end is e - 1. At ε = 1/256 an error of 255 ε is the "
+    "whole light, and one of 129 ε a half."
 )
 
 
@@ -55,7 +58,7 @@ def check_claims(sources, report):
     claims = [
         claim_bound(found),
         claim_discrete(found["discrete"]),
-        claim_order(found["linear"], partly),
+        claim_order(found, partly),
         claim_direction(
             [divide_by_epsilon(np.ptp(shares[name], axis=1)).max() for name in ONE_SIDED]
         ),
@@ -110,7 +113,7 @@ def claim_bound(found):
 def claim_discrete(errors):
     """Claim that the error bound ε holds for the march `discrete` in both directions of error."""
     return Claim(
-        "So it is for `discrete`, in both ways.",
+        "`discrete` is off by ε at most, too bright or too dark.",
         "4.2",
         "-1 to 1 ε",
         f"{errors.min():.2f} to {errors.max():.2f}",
@@ -118,16 +121,24 @@ def claim_discrete(errors):
     )
 
 
-def claim_order(errors, partly):
+def claim_order(found, partly):
     """Claim that the error of a march is an order of magnitude smaller than its bound ε."""
-    some = errors[..., partly]
+    cells = {}
+    for name, errors in found.items():
+        some = np.abs(errors[..., partly])
+        figures = some.mean(), np.percentile(some, 99), some.max()
+        cells |= {(name, what): value for what, value in zip(MEASURES, figures, strict=True)}
+    ours, verdict = judge_over_grid(("march", "error"), {c: v < 0.1 for c, v in cells.items()})
+    means = ", ".join(f"{name} {cells[name, MEASURES[0]]:.3f}" for name in found)
     return Claim(
         "In practice the error is smaller than ε by an order of magnitude at least.",
         "6.3",
         "below 0.1 ε",
-        f"linear: {some.mean():.3f} ε in the mean, {errors.max():.2f} ε at most",
-        to_verdict(some.mean() < 0.1),
-        "Confirmed where the mean over partly lit points is below 0.1; the worst point is not.",
+        f"means of {means} ε; {ours}",
+        verdict,
+        "The thesis does not say of which error; section 6.3 is by `linear`. Errors are those of "
+        "partly lit points: the mean, the one that 1 in 100 exceeds, and the largest. In the "
+        "scene of section 6.3 below, the largest of `linear` is 0.3 to 0.4 ε.",
     )
 
 

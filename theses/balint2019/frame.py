@@ -11,7 +11,7 @@ from brdfkit.theses.balint2019.whole_frames import ROWS
 from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
 from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
 from brdfkit.distance_fields.shadows.split import compute_split_shadow
-from brdfkit.images.errors.psnr import psnr
+from brdfkit.images.errors.psnr import find_peak, psnr
 from brdfkit.theses.timing import compare_times
 
 SIZE, TRUE_RAYS, TIMES = 144, 1024, 5
@@ -54,7 +54,8 @@ class Frame:
         times = [self.compare_times(n, name) for n in RAYS]
         return float(np.interp(self.count_equal_rays(name), RAYS, times))
 
-    def compute_psnr(self, name):
-        """Return the PSNR [dB] of the shaded picture by a method."""
+    def compute_psnr(self, name, dimmed=False):
+        """Return the PSNR [dB] of the shaded picture by a method, or of pixels not fully lit."""
         true, other = (self.view.shade(s)[..., None] for s in (self.truth, self.shares[name]))
-        return psnr(true, other)
+        mask = self.view.make_image(self.truth < 1, 0) > 0 if dimmed else None
+        return psnr(true, other, mask, find_peak(true))

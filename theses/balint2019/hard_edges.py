@@ -15,9 +15,9 @@ SECONDS = 3
 SIZE, HALF, EPSILON, RADIUS = 256, 2.5, 1 / 30, 0.5
 PARTLY = 0.02  # shares from this to 1 minus this are neither lit nor dark
 TEXT = f"""The simple scene. The width of the edge is measured on its ground, seen from above
-through all objects with {SIZE} × {SIZE} pixels, and with empty balls that have half a pixel's edge
-as their radius: the area of the pixels that are neither lit nor dark, over the length of the edge,
-the sum of |∇ share|."""
+through all objects with {SIZE} × {SIZE} pixels, and with empty balls that are as wide as a pixel,
+as those of the thesis: the area of the pixels that are neither lit nor dark, over the length of the
+edge, the sum of |∇ share|. So it is the mean width."""
 
 
 @in_turn
@@ -29,11 +29,13 @@ def check_claims(sources, report):
     report(1, 2)
     wide = measure_edge_width(share)
     claim = Claim(
-        "With a light of radius 0 the shadow is hard, with an edge of a pixel at most.",
+        "With a light of radius 0 the shadow is hard, and its edge blurred over about a pixel.",
         "4.1, Figure 1.1",
         "1 pixel",
-        f"{wide:.2f} pixels",
-        to_verdict(wide <= 1),
+        f"{wide:.2f} pixels in the mean",
+        to_verdict(0.5 < wide < 1.5),
+        "Confirmed from 0.5 to 1.5 pixels. The ball about the point, which is as wide as the "
+        "pixel, makes the width.",
     )
     caption = "Without shadows, with a hard one, and with those of lights of two radii."
     return Section(

@@ -61,7 +61,7 @@ def make_times_table(name, ours, printed, evaluations):
     rows = [
         (
             f"1/{n} {direction}",
-            *(f"{a:.2f} / {b:.2f} ({e:.0f})" for a, b, e in zip(*columns, strict=True)),
+            *(f"{a:.2f} / {b:.2f} ({e:.1f})" for a, b, e in zip(*columns, strict=True)),
         )
         for (n, direction), *columns in zip(
             list_settings(),
@@ -77,15 +77,15 @@ def make_times_table(name, ours, printed, evaluations):
 
 
 def make_error_table(errors):
-    """Return a table of errors by march and error bound ε, in direction A."""
+    """Return a table of errors by march, error bound ε and direction."""
     rows = [
         (
             name.replace("table_", "").replace("_", "."),
-            f"1/{n}",
-            *(f"{e:.5f}" for e in found[2 * i]),
+            f"1/{n} {direction}",
+            *(f"{e:.5f}" for e in found[i]),
         )
         for name, found in errors.items()
-        for i, n in enumerate(INVERSES)
+        for i, (n, direction) in enumerate(list_settings())
     ]
-    caption = "Errors against τ(r_min), root mean squares, in direction A."
+    caption = "Errors against τ(r_min), root mean squares."
     return Table(("table", "ε", *MARCHES), rows, caption)

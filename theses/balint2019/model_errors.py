@@ -183,7 +183,7 @@ def claim_estimate(estimated, exact):
 
 def draw_shadows(found):
     """Draw a row for each solid: the truth, the march `linear`, and two differences."""
-    drawn = make_figure(7.6, 1.9 * len(found))
+    drawn = make_figure(8.4, 1.9 * len(found))
     grid = drawn.subplots(len(found), 4, squeeze=False)
     for row, (name, shadows) in zip(grid, found.items(), strict=True):
         for axes, image in zip(row[:2], ("truth", "linear"), strict=True):
@@ -191,8 +191,9 @@ def draw_shadows(found):
             axes.set_title(f"{name}: {image}", size=9)
         for axes, method in zip(row[2:], ("linear", "split"), strict=True):
             error = shadows.compute_error(method)
-            axes.imshow(error, cmap="RdBu", vmin=-SHOWN, vmax=SHOWN, origin="lower")
+            bars = axes.imshow(error, cmap="RdBu", vmin=-SHOWN, vmax=SHOWN, origin="lower")
             axes.set_title(f"{method} - truth", size=9)
         for axes in row:
             axes.set_axis_off()
+        drawn.colorbar(bars, ax=row[-1], shrink=0.8)
     return drawn

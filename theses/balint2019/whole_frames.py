@@ -52,18 +52,19 @@ def measure_frames():
     return measure_in_turns(methods, TIMES)
 
 
-def measure_horizon(epsilon):
-    """Return how long frames by `linear` take over those by `convex`, in both directions."""
+def measure_horizon(epsilon, forms):
+    """Return how long frames by `linear` take over those by `forms`, by form and direction."""
     scene, radius = scenes.horizon(), 0.5
     methods = {
-        (march, way): partial(
+        (name, way): partial(
             render_frame, scene, radius, partial(march, epsilon=epsilon, direction=way)
         )
-        for march in (compute_linear_shadow, compute_convex_shadow)
+        for name, march in ({"linear": compute_linear_shadow} | forms).items()
         for way in "AB"
     }
     found = measure_in_turns(methods, TIMES)
-    return [
-        compare_times(found[compute_linear_shadow, way], found[compute_convex_shadow, way])
+    return {
+        (form, way): compare_times(found["linear", way], found[form, way])
+        for form in forms
         for way in "AB"
-    ]
+    }
