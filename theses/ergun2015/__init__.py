@@ -33,7 +33,7 @@ graphics card. So ours are ratios and orders, at settings that are told with eac
 A claim is *confirmed* where our figures agree, in all that was tried, *not confirmed* where they do
 not, *not stated* where the thesis gives no figure to compare ours to, *not run* where a file is
 missing. *Holds where* names the largest block of the settings that were tried in which a claim
-holds without exception, if that is two of them or more and a tenth of all."""
+holds without exception, if that is an eighth of them or more, and not a single one of many."""
 
 # The probes and meshes are optional: they are looked for beside the folder of measurements
 NEEDS: dict[str, str] = {}
