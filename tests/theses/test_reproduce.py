@@ -106,6 +106,7 @@ def test_the_theses_are_listed():
 @pytest.mark.parametrize(
     ("thesis", "parts"),
     [
+        ("balint2019", ["check_values"]),
         ("ergun2008", ["check_values", "misprints", "depth_curves"]),
         ("ergun2015", ["convex_rays"]),
         ("lesar2018", ["phase_functions", "schlick", "isosurface_depth"]),

@@ -160,6 +160,6 @@ def claim_rival_times(frames, found):
         f"{ours}",
         verdict,
         f"As fast is up to {ALIKE:g} times the printed ratio. Eye rays and shading, which all of "
-        "them share, hide in frames that their shadows take less time: they end at the first "
-        "object.",
+        "them share, hide in frames that the rivals' shadows take less time: these end at the "
+        "first object.",
     )

@@ -44,7 +44,7 @@ OTHERS = {
     "none": ("sphere", SPLIT | {"shadow": "none"}),
     "rays": ("rectangle", EXACT | {"samples": MANY}),
 }
-WHITE, SHOWN = 2.0, 0.05  # how many times as bright the figure is; the largest difference it shows
+WHITE, SHOWN = 1.5, 0.05  # how many times as bright the figure is; the largest difference it shows
 TEXT = f"""A sphere, a cube and a cylinder, of rough plastic on a matte ground, under a sphere of
 radius {RADIUS:g} or a rectangle; {SIZE} × {SIZE} pixels, one ray for each, by the integrator
 `distance_field` with `linear` at ε = 1/20. Times are CPU seconds of whole pictures in one thread,
