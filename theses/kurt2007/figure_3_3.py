@@ -82,7 +82,9 @@ def _claim_distributions(psnr, ratios):
         "pictures at m = 0.2 and 0.6",
         f"{ours}: {words}",
         verdict,
-        "The Gaussian of the angle and Beckmann's of its tangent part as m grows. A fit makes up "
+        "The Gaussian of the angle and Beckmann's of its tangent part as m grows, and "
+        "the Gaussian loses brightness: times cos θ it integrates to 0.97 at m = 0.2 and 0.79 at "
+        "m = 0.6, where Beckmann's has 1. A fit makes up "
         f"for it by m: E of Torrance-Sparrow over Cook-Torrance is {np.median(ratios):.3f} "
         f"(median), within 5 % on {near} of {len(ratios)} samples of CUReT.",
     )

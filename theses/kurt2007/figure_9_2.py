@@ -24,7 +24,7 @@ SHORT = {
 }  # as it fits above a small picture
 TEXT = """The fits of Table 9.2, with weights of any sign, on balls under the sky and softbox of
 `render`; sums below 0 are black. *Measured* is the sample, interpolated between and beyond its 205
-pairs of directions, so that all pictures hang as much on what was not measured. Each material has
+pairs of directions, so that all pictures depend as much on what was not measured. Each material has
 its own exposure, since the unit of our data differs from sample to sample."""
 
 
@@ -67,12 +67,12 @@ def _claim_pictures(psnr, errors, materials):
     best = [names[row] for row in decibels.argmax(axis=0)]
     alike = [spearmanr(-e, d).statistic for e, d in zip(errors.T, decibels.T, strict=True)]
     return Claim(
-        "The balls of nine models on five materials.",
+        "The balls of nine models on five materials look as printed.",
         "Figure 9.2",
         "pictures, no figure",
         "nearest to the measured: "
         + ", ".join(f"{n} on {m}" for n, m in zip(best, materials, strict=True)),
         UNSTATED,
-        "The thesis shows the balls, and says no figure of them. A lower E is not a nearer "
+        "The thesis shows the balls, and gives no figure for them. A lower E is not a nearer "
         f"picture: their orders correlate by {min(alike):.2f} to {max(alike):.2f}, Spearman's.",
     )

@@ -35,7 +35,7 @@ def check_claims(sources, report):
     pairs = {"f(L, V)": (model, _exchange(model)), "control": (lopsided, _exchange(lopsided))}
     rows, apart = [], {}
     for name, (forth, back) in pairs.items():
-        pictures = render_pictures({"as fitted": forth, "L and V exchanged": back})
+        pictures = render_pictures({"L and V": forth, "L and V exchanged": back})
         first, second = pictures.pictures.values()
         apart[name] = float(np.abs(second - first).max() / first.max())
         shown, difference = show_rendering(pictures), show_differences(pictures)

@@ -70,7 +70,8 @@ def check_claims(sources, report):
         _claim_density(),
     ]
     caption = "The highlight alone: n = 50, α = m = 0.2, F₀ = 0.5."
-    return Section("Chapter 4: sampling", TEXT, claims, [Table(heads, lines, caption)])
+    tables = [Table(heads, lines, caption), _make_lambert_table(polynomials, ward)]
+    return Section("Chapter 4: sampling", TEXT, claims, tables)
 
 
 @cache
@@ -135,6 +136,19 @@ def _measure_polynomials(samples):
     return np.array(found).T
 
 
+def _make_lambert_table(polynomials, ward):
+    """Return the table of the cells over which Lambert's sampling is judged."""
+    lines = [
+        (
+            "polynomials: share with 1 or less",
+            *(f"{s:.0%}" for s in (polynomials <= ENOUGH).mean(axis=0)),
+        ),
+        ("polynomials: median", *(f"{v:.2f}" for v in np.median(polynomials, axis=0))),
+        *((f"Ward, α = {w}", *(f"{ward['ward', w, a][1]:.2f}" for a in ANGLES)) for w in WIDTHS),
+    ]
+    return Table(("variance by Lambert's sampling", *(f"view at {a}°" for a in ANGLES)), lines)
+
+
 def _claim_own(own):
     holds = {(name, f"{a}°"): v[0] < v[1] for (name, a), v in own.items()}
     ours, verdict = judge_over_grid(["model", "view"], holds)
@@ -191,7 +205,8 @@ def _claim_lambert(polynomials, ward):
         f"{polynomials.max():.1f}; of Ward's highlight {glossy[0][-1]:.1f} to {glossy[0][0]:.0f} "
         "at 0°",
         verdict,
-        "Enough for the polynomials, whose highlights are low and wide; not for gloss itself.",
+        "Enough for the polynomials, whose highlights are low and wide; not for gloss itself: see "
+        "the second table.",
     )
 
 
@@ -199,7 +214,7 @@ def _claim_cook(own):
     found = [v for (name, _), v in own.items() if name == "Cook-Torrance"]
     worst, others = max(v[0] for v in found), [v[1] for v in found]
     return Claim(
-        "Cook-Torrance cannot be sampled.",
+        "Cook-Torrance has no sampling method.",
         "3.2",
         "no method",
         f"by its facets the variance is up to {worst:.2f}, by Lambert's {min(others):.1f} to "

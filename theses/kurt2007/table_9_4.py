@@ -12,7 +12,7 @@ from brdfkit.core.jit.threads import use_one_thread
 from brdfkit.model import labels
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression.solvers import SLSQP, LevenbergMarquardt
-from brdfkit.theses.claims import Claim, measure_cpu_seconds, to_verdict
+from brdfkit.theses.claims import Claim, measure_cpu_seconds
 from brdfkit.theses.grid import judge_over_grid
 from brdfkit.theses.page import Section, Table
 from brdfkit.theses.timing import compare_times
@@ -23,7 +23,7 @@ POLYNOMIAL = "Polynomial (p = 7)"
 LABEL = "pca_polynomial:degree=7"
 SOLVERS = {"LM": LevenbergMarquardt, "SQP": SLSQP}
 WHOLE, ALONE = "whole fit", "search alone"
-LEAST = 2  # times as long as the polynomial, in the text: it takes "almost half"
+LEAST = 1.5  # times as long as the polynomial: so much rounds to twice, of which the text speaks
 ALIKE = 2  # ratios on two machines agree up to this factor
 TEXT = f"""CPU seconds in one thread, divided by those of the polynomial by bisquare on the same
 sample, on {len(SAMPLES)} samples of CUReT: on each, all are run one after the other, so that other
@@ -125,13 +125,14 @@ def _format(ratio):
 
 
 def _claim_half(theirs, ratios):
-    holds, fastest = {}, {}
-    for solver in SOLVERS:
-        for timed in (WHOLE, ALONE):
-            of_all = [ratios[name, solver, timed] for name in SEVEN]
-            fastest[solver, timed] = min(of_all, key=lambda ratio: ratio.value)
-            holds[solver, timed] = min(ratio.low for ratio in of_all) >= LEAST
-    ours, verdict = judge_over_grid(["rivals' search", "time"], holds)
+    fastest = {
+        (solver, timed): min((ratios[n, solver, timed] for n in SEVEN), key=lambda r: r.value)
+        for timed in (WHOLE, ALONE)
+        for solver in SOLVERS
+    }
+    ours, verdict = judge_over_grid(
+        ["rival", "search", "time"], {cell: r.low >= LEAST for cell, r in ratios.items()}
+    )
     least = theirs[POLYNOMIAL]
     words = ", ".join(f"{_format(f)} ({s}, {t})" for (s, t), f in fastest.items())
     return Claim(
@@ -141,9 +142,11 @@ def _claim_half(theirs, ratios):
         f"{max(theirs[n] for n in SEVEN) / least:.1f} times as long",
         f"{ours}: fastest rival {words}",
         verdict,
-        f"It holds where every rival takes {LEAST} times as long, with its whole interval. About "
-        "the programs as much as the models: a pass of bisquare is a linear solution of 15 "
-        "weights, and most of a fit is what all fits have.",
+        f"It holds of a rival that takes {LEAST} times as long or more, with its whole interval: "
+        "so much rounds to twice, and the thesis's own fastest rival takes "
+        f"{min(theirs[n] for n in SEVEN) / least:.3f} times. About the programs as much as the "
+        "models: a pass of bisquare is a linear solution of 15 weights, and most of a whole fit is "
+        "what all fits have.",
     )
 
 
@@ -154,14 +157,19 @@ def _claim_ratios(theirs, ratios):
         found = [(ratios[name, solver, timed], printed[name]) for name in SEVEN]
         return sum(r.low * ALIKE >= p >= r.high / ALIKE for r, p in found)
 
-    counts = {(s, t): count_alike(s, t) for s in SOLVERS for t in (WHOLE, ALONE)}
+    counts = {(s, t): count_alike(s, t) for t in (WHOLE, ALONE) for s in SOLVERS}
+    found, verdict = judge_over_grid(
+        ["search", "time"], {cell: n == len(SEVEN) for cell, n in counts.items()}
+    )
     return Claim(
-        "The ratios of the times of SQP to those of bisquare, the searches alone.",
+        "The times of the seven fits have the printed ratios to that of the polynomial.",
         "Table 9.4",
         ", ".join(f"{p:.1f}" for p in printed.values()),
-        ", ".join(f"{ratios[name, 'SQP', ALONE].value:.1f}" for name in SEVEN),
-        to_verdict(counts["SQP", ALONE] == len(SEVEN)),
+        f"{found}: "
+        + ", ".join(f"{ratios[name, 'SQP', ALONE].value:.1f}" for name in SEVEN)
+        + f" (SQP, {ALONE})",
+        verdict,
         f"Within a factor of {ALIKE}, with the whole interval: "
         + ", ".join(f"{n} of {len(SEVEN)} ({s}, {t})" for (s, t), n in counts.items())
-        + ". So the thesis's times come back where what it timed is timed.",
+        + ". The thesis searched by SQP; whether it timed the search alone is not told.",
     )

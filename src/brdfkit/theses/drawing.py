@@ -26,12 +26,17 @@ def style_axes(axes: Any, title: str, ylabel: str) -> None:
 
 
 def draw_curves(axes: Any, curves: Mapping[str, AnyArray], title: str, ylabel: str) -> None:
-    """Draw each curve's values over 1, 2, 3, ... on a logarithmic axis, the last curve thick."""
+    """Draw each curve's values over 1, 2, 3, ... on a logarithmic axis, the last curve thick.
+
+    Neighbours of similar colours differ by their dashes as well.
+    """
     last = list(curves)[-1]
     colours = {**dict(zip(curves, COLOURS, strict=False)), last: COLOURS[-1]}
-    for name, values in curves.items():
-        thick = {"linewidth": 2.2, "zorder": 3} if name == last else {"linewidth": 1.0}
-        axes.plot(range(1, len(values) + 1), values, label=name, color=colours[name], **thick)
+    for number, (name, values) in enumerate(curves.items()):
+        style = {"linewidth": 2.2, "zorder": 3} if name == last else {"linewidth": 1.0}
+        if name != last and number >= len(COLOURS) - 2:
+            style |= {"linestyle": "--", "linewidth": 1.3}
+        axes.plot(range(1, len(values) + 1), values, label=name, color=colours[name], **style)
     axes.set_yscale("log")
     axes.margins(x=0.01)
     style_axes(axes, title, ylabel)
