@@ -5,10 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from brdfkit.theses.kurt2007.figure_5_1 import MATLAB, NOISE, X, reweight_columns
+from brdfkit.theses.kurt2007.figure_9_1 import _claim_degrees
 from brdfkit.theses.kurt2007.interactions import make_interacting_model
 from brdfkit.theses.kurt2007.pictures import show_differences, show_rendering, unpack_mesh
+from brdfkit.theses.kurt2007.printed import SEVEN, read_printed_table
 from brdfkit.theses.kurt2007.rational_functions import LEAST, fit_rational
 from brdfkit.theses.kurt2007.sampling import _compute_eq_4_25
+from brdfkit.theses.kurt2007.table_9_4 import ALONE, POLYNOMIAL, SOLVERS, WHOLE, _claim_half
 
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.theses.sources import Sources
@@ -73,3 +76,27 @@ def test_pictures_share_an_exposure_and_equal_ones_differ_by_white():
 def test_a_missing_mesh_is_a_knot(tmp_path):
     with unpack_mesh(Sources(tmp_path / "measured", None), "stanford-bunny") as scene:
         assert scene == "knot"
+
+
+@pytest.mark.parametrize(
+    ("decibels", "verdict"),
+    [
+        ([22, 24, 33, 32, 27, 31], "not confirmed"),  # best at p = 3
+        ([22, 24, 31, 30, 29, 31], "confirmed"),
+        ([22, 22, 22, 22, 22, 22.5], "not confirmed"),
+    ],
+)
+def test_pictures_improve_up_to_the_last_degree(decibels, verdict):
+    assert _claim_degrees({("tile", "vase"): decibels}).verdict == verdict
+
+
+def test_the_printed_times_pass_the_rule_for_half_the_time():
+    theirs = read_printed_table("table_9_4")
+    printed = {n: theirs[n] / theirs[POLYNOMIAL] for n in SEVEN}
+    ratios = {
+        (name, solver, timed): SimpleNamespace(value=r, low=r, high=r)
+        for name, r in printed.items()
+        for solver in SOLVERS
+        for timed in (WHOLE, ALONE)
+    }
+    assert _claim_half(theirs, ratios).verdict == "confirmed"

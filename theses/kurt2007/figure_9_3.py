@@ -76,6 +76,6 @@ def _claim_best(psnr):
         "46.5 dB, the next 44.4 dB",
         f"{ours}; {min(leads):+.1f} to {max(leads):+.1f} dB to the best other model",
         verdict,
-        "In linear values, over the pixels of the shape. Where it is not said to hold, it may do "
-        "so in a light; see the table.",
+        "In linear values, over the pixels of the shape. Under a single light it may hold "
+        "on another shape as well: see the table.",
     )
