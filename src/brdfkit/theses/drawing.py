@@ -33,7 +33,9 @@ def draw_curves(axes: Any, curves: Mapping[str, AnyArray], title: str, ylabel: s
     last = list(curves)[-1]
     colours = {**dict(zip(curves, COLOURS, strict=False)), last: COLOURS[-1]}
     for number, (name, values) in enumerate(curves.items()):
-        style = {"linewidth": 2.2, "zorder": 3} if name == last else {"linewidth": 1.0}
+        style: dict[str, Any] = (
+            {"linewidth": 2.2, "zorder": 3} if name == last else {"linewidth": 1.0}
+        )
         if name != last and number >= len(COLOURS) - 2:
             style |= {"linestyle": "--", "linewidth": 1.3}
         axes.plot(range(1, len(values) + 1), values, label=name, color=colours[name], **style)
