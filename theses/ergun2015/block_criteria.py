@@ -39,7 +39,11 @@ def check_claims(sources, report):
         to_verdict(len(best) == len(errors)),
     )
     rows = [(name, *(f"{e:.3g}" for e in row)) for name, row in errors.items()]
-    picture = Picture("block_criteria", draw_block_map(*next(iter(find_probes(sources).items()))))
+    picture = Picture(
+        "block_criteria",
+        draw_block_map(*next(iter(find_probes(sources).items()))),
+        "Blocks by the sum of squared errors.",
+    )
     table = Table(("map", *CRITERIA), rows)
     return Section("Which block to cut next", TEXT, [claim], [table], [picture])
 

@@ -45,10 +45,11 @@ def enclose_in_sphere(hull):
     return Hull(hull.vertices, np.column_stack([np.eye(3), -centre]) / radius, planes)
 
 
-def make_printed_search(epsilon):
+def make_printed_search(epsilon, ahead=False):
     """Return a function like `find_ray_entry` by Algorithm 3 with an ε, which the thesis omits.
 
-    The unit of length is the radius of the sphere around a part.
+    The unit of length is the radius of the sphere around a part. The search starts where the ray
+    enters that sphere, or, if it has to be `ahead` of the origin, where the ray first meets it.
     """
 
     def find_printed_entry(mi, o, d, planes, part, active=True):
@@ -56,6 +57,7 @@ def make_printed_search(epsilon):
         nearest = o + middle * d
         half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))
         start = dr.select(active & (half > 0), mi.UInt32(GOING), mi.UInt32(MISSED))
+        first = dr.select(mi.Bool(ahead) & (middle < half), half, -half)
 
         def step_to_plane(t0, state, count):
             p0 = nearest + t0 * d
@@ -68,7 +70,7 @@ def make_printed_search(epsilon):
             return dr.select(state == GOING, t1, t0), state, count + 1
 
         t, state, count = dr.while_loop(
-            (-half, start, mi.UInt32(0)),
+            (first, start, mi.UInt32(0)),
             lambda t0, state, count: (state == GOING) & (count < LOOKUP_LIMIT),
             step_to_plane,
         )
