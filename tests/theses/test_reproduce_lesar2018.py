@@ -122,7 +122,7 @@ def test_pictures_where_no_scan_is_at_hand(monkeypatch, tmp_path):
         },
     )
     parts = "four_renderers", "transfer_functions", "tone_mappers"
-    assert verdicts(*parts, path=tmp_path) == ["not run"] + ["confirmed"] * 3
+    assert verdicts(*parts, path=tmp_path) == ["not run", "not stated", *["confirmed"] * 2]
     assert len(list(tmp_path.glob("*.png"))) == 3
     assert "Not at hand: MRI, frog." in (tmp_path / "lesar2018.md").read_text(encoding="utf-8")
 
@@ -202,11 +202,10 @@ def test_the_application_at_a_small_size(monkeypatch):
     change(monkeypatch, {application: small})
     ratio = compare_times([2.0, 2.0], [1.0, 1.0])
     monkeypatch.setattr(application, "measure_response", lambda *_: ratio)
-    averaged = "holds where the renderer is single_scattering"
-    assert verdicts("application") == ["confirmed"] * 2 + [averaged] + ["not run"] * 2
+    assert verdicts("application") == ["confirmed"] * 3 + ["not run"] * 2
     beside = {"show.slices": True}  # which the same samples are drawn with
     monkeypatch.setattr(application, "PARTS", {"camera": (beside, application.RENDERERS)})
-    assert verdicts("application") == ["not confirmed"] * 2 + [averaged] + ["not run"] * 2
+    assert verdicts("application") == ["not confirmed"] * 2 + ["confirmed"] + ["not run"] * 2
 
 
 @pytest.mark.quick

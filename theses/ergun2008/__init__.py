@@ -17,9 +17,9 @@ far nearer to exact shadows than a plain map, but where that map has acne. A cap
 can mend depth-pass. *What surprised*: a blur of 5 × 5 texels, which the thesis does not mention,
 takes VSM from above a plain map to 1 to 5 dB below it; with as many texels in all, PSSM seldom
 gains; by a constant bias PCF loses up to 17 dB to a plain map, not by its soft edges but by acne;
-and along one ray of sunlight no projection distorts depth at all. Seven formulas are misprinted.
-Four projections are tried in the thesis's own forms, beside ours; whether a graphics card does
-things faster was not run.
+and along one ray of sunlight no projection distorts depth at all. Six formulas are misprinted, and
+one can be misread. Four projections are tried in the thesis's own forms, beside ours; whether a
+graphics card does things faster was not run.
 
 The thesis does not describe its scene, nor resolutions, biases and filters; it has no times. So
 ours are other scenes, each in four views and two lights that are close together, as there: orders
@@ -43,7 +43,8 @@ filters, resolutions, partitions and what is recommended are tried with our form
 A claim is *confirmed* where it holds in everything that was tried. *Holds where* names the largest
 block of the grid in which it holds without exception, if that is an eighth of the grid or more;
 else it is *not confirmed*, as where our figures disagree and there is no grid. *Not
-stated* is it where the thesis gives no figure to compare ours to."""
+stated* is it where the thesis gives no figure to compare ours to, and *not run* where it speaks of
+hardware of its time."""
 
 NEEDS: dict[str, str] = {}  # no measured files, as all scenes are made by code
 

@@ -99,7 +99,8 @@ def claim_fifth_point():
         "2.2.2.5",
         off["eye"],
         off["light"],
-        "Only towards the light does the corner of the plane itself stay on the corner of the map.",
+        "Only towards the light does the corner of the plane itself stay on the corner of the map: "
+        "the sentence is right if its point of view is the light's.",
     )
 
 
@@ -156,7 +157,7 @@ def claim_footprint_area():
 
 
 def claim_rotation():
-    """Claim on a rotated point, whose last digit was cut."""
+    """Claim on a rotated point, whose last digit is wrong."""
     turn = np.radians(30)
     y = -5 * np.sin(turn) + 8 * np.cos(turn)
     return Claim(
@@ -165,7 +166,7 @@ def claim_rotation():
         "(8.3301, 4.4281)",
         f"({5 * np.cos(turn) + 8 * np.sin(turn):.4f}, {y:.4f})",
         to_verdict(f"{y:.4f}" == "4.4281"),
-        "The last digit was cut.",
+        "The last digit is wrong: 4.42820.",
         arithmetic=True,
     )
 
