@@ -8,19 +8,19 @@ sets what came out beside what is printed.
 **In short.** The thesis fits known BRDF models to measurements, and a new one, a polynomial over
 two principal components of the directions. It claims that the polynomial, being linear, takes half
 the time, reaches the global minimum, needs few parameters, and describes most materials best. *What
-holds*: its printed errors come back, after one factor per material; so do the ratios of its times
-where the searches alone are timed; the polynomial of degree 7 has the lowest error of eight models
-on most samples of CUReT; and away from the horizon Lambert's sampling is enough for it. *What
-depends on the fit*: by least squares the polynomial has one minimum, and is the best on as many
-samples as is printed; by bisquare, as the thesis fits it, it has several minima, is the best on
-fewer, and brings no highlight to a lacquer at any degree. *What does not hold*: on MERL it is not
-the best by E, in the thesis's own table either, though it is by its pictures; on a tile the picture
-is best at p = 3 and not at 6; a rational function of as many coefficients has lower errors, also of
-values left out of its fit; and of the models that are called plausible Blinn-Phong and
-Cook-Torrance reflect up to 4 times the light that arrives, Ward-Dür more than all near the horizon,
-Ward only in its last quarter of a degree. *What surprised*: 61 of 364 printed fits have a highlight
-or a diffuse part below 0, with which they beat every fit that light allows; and though bisquare
-hides highlights, the balls of four of MERL's five are nearest by the polynomial.
+holds*: the printed errors of Table 9.2 come back, after one factor per material; so do the ratios
+of its times, by SQP where the searches alone are timed; the polynomial of degree 7 has the lowest
+error of eight models on most samples of CUReT; and away from the horizon Lambert's sampling is
+enough for it. *What depends on the fit*: by least squares the polynomial has one minimum, and is
+the best on as many samples as is printed; by bisquare, as the thesis fits it, it has several
+minima, is the best on fewer, and brings no highlight to a lacquer at any degree. *What does not
+hold*: on MERL it is not the best by E, in the thesis's own table either, though it is by its
+pictures; on a tile the picture is best at p = 3 and not at 6; a rational function of as many
+coefficients has lower errors, also of values left out of its fit; and of the models that are called
+plausible Blinn-Phong and Cook-Torrance reflect up to 4 times the light that arrives, Ward-Dür more
+than all near the horizon, Ward only in its last quarter of a degree. *What surprised*: 61 of 364
+printed fits beat every fit that light allows, by a highlight or a diffuse part below 0; and though
+bisquare hides highlights, the balls of four of MERL's five are nearest by the polynomial.
 
 The measurements, which brdfkit does not ship, and what is not as it was in the thesis:
 
@@ -40,7 +40,9 @@ E is eq. 5.13: cosine-weighted, w = sin θ_i, squares summed over the channels, 
 80°. A claim is *confirmed* where our figures agree to the tolerance that is told with it, *not
 confirmed* where they do not, or where the thesis's own table or a proof speaks against it, *not
 stated* where the thesis gives no figure or comparison to set ours beside, *not run* where a file is
-missing, even where one that is made up in its place has figures."""
+missing, and nothing independent stands in for it. *Holds where* names the largest block of the
+settings that were tried in which a claim holds without exception, if that is an eighth of them or
+more, and not a single one of more than four."""
 
 # The measured files, and where to get each of them
 NEEDS = {
