@@ -1,10 +1,13 @@
 """The search for the end of a fit: where few starts lead to it, where a parameter does nothing."""
 
+from types import SimpleNamespace
+
 import numpy as np
+import pytest
 from brdfkit.theses.kurt2007.neural import decode_network
 
 import brdfkit as bk
-from brdfkit.regression.search.levenberg_marquardt import _add_hessian_correction
+from brdfkit.regression.search.levenberg_marquardt import Search, _add_hessian_correction
 
 
 def test_an_end_is_found_to_which_one_start_in_seventeen_leads(measured_data):
@@ -33,3 +36,11 @@ def test_a_parameter_that_does_nothing_has_no_add_correctionion():
         _add_hessian_correction(hessian, correction),
         hessian + np.stack([np.zeros((2, 2)), np.eye(2)]),
     )
+
+
+@pytest.mark.quick
+def test_an_end_with_weights_that_no_model_may_have_comes_last():
+    """As of two lobes of Lafortune's over CUReT, of which one had the weight 1e109."""
+    weights = np.array([1.0, 1e109, 1.0, 2.0, 1e120]).reshape(5, 1, 1)
+    ends = SimpleNamespace(error=np.array([3.0, 1.0, 2.0, 2.0, 1.5]), weights=weights)
+    assert Search(ends, np.ones(5, bool), 0).find_best_ends(2).tolist() == [2, 0]

@@ -11,6 +11,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.interrupts import Interrupted
+from brdfkit.model.parameters import LARGEST_WEIGHT
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.parameter_space import join_point, make_point_limits
@@ -20,6 +21,7 @@ from brdfkit.regression.problem.parameter_space import join_point, make_point_li
 PATIENCE = 10
 # Two ends of searches count as one if their squared losses differ by less than this share
 SAME_END = 1e-4
+WORST = np.finfo(float).max / 2  # E² of an end that no model can have
 # A squared loss below this share of the worst start's counts as 0
 ROUNDING = 1e-24
 SMALLEST_DAMPING, LARGEST_DAMPING = 1e-15, 1e9
@@ -42,10 +44,13 @@ class Search:
         """Return the indices of the `count` best ends, those with the least squared loss E².
 
         Of ends with equal E² only one is returned: in a model with two equal lobes, they differ
-        only in the order of the lobes.
+        only in the order of the lobes. An end with larger weights than a model may have comes last:
+        there a lobe is 0 but for rounding.
         """
-        order = np.argsort(self.ends.error, kind="stable")
-        error = self.ends.error[order]
+        largest = np.abs(self.ends.weights).max(axis=(1, 2), initial=0)
+        error = np.where(largest <= LARGEST_WEIGHT, self.ends.error, WORST)
+        order = np.argsort(error, kind="stable")
+        error = error[order]
         new = np.diff(error, prepend=-1) > SAME_END * error
         return order[new][:count]
 
