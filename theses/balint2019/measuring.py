@@ -1,16 +1,10 @@
 """Measures shadows: their shares of the light, evaluations, errors and times."""
 
-import drjit as dr
 import numpy as np
 
 from brdfkit.core.jit.threads import use_one_thread
 from brdfkit.theses.claims import measure_cpu_seconds
-
-
-def wait_for(*arrays):
-    """Run the kernel of Dr.Jit arrays and wait for its end."""
-    dr.eval(*arrays)
-    dr.sync_thread()
+from brdfkit.theses.timing import wait_for
 
 
 def measure_in_turns(methods, times):

@@ -3,12 +3,12 @@
 import numpy as np
 from brdfkit.theses.balint2019.measuring import compute_rms
 from brdfkit.theses.balint2019.model_errors import CLEAR, SHADE
+from brdfkit.theses.balint2019.ray_claims import FASTER
 
 from brdfkit.theses.claims import UNSTATED, Claim, to_verdict
-from brdfkit.theses.timing import ALIKE, compare_times
+from brdfkit.theses.timing import compare_times
 
 RIVALS = {"quilez": "a", "aaltonen": "a'"}
-FASTER = f"Confirmed if it is as fast as printed, less the factor {ALIKE:g}; faster counts as well."
 
 
 def claim_dark(pictures):

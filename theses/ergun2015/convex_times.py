@@ -13,7 +13,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import NOT_RUN, UNSTATED, Claim
 from brdfkit.theses.grid import judge_over_grid
 from brdfkit.theses.page import Section, Table
-from brdfkit.theses.timing import compare_times, measure_in_turns
+from brdfkit.theses.timing import compare_times, measure_in_turns, wait_for
 
 SECONDS = 60
 PIXELS, RAYS, TURNS = 96, 16, 21  # rays of each pixel to the light, and measurements
@@ -77,9 +77,10 @@ def measure_rays(study):
         FIELDS: study.fields,
     }
     functions = {
-        kind: lambda by=by: finish(by.is_blocked(rays, active)[0]) for kind, by in occluders.items()
+        kind: lambda by=by: wait_for(by.is_blocked(rays, active)[0])
+        for kind, by in occluders.items()
     }
-    functions[TRIANGLES] = lambda: finish(mesh.ray_test(rays, active))
+    functions[TRIANGLES] = lambda: wait_for(mesh.ray_test(rays, active))
     return measure_in_turns(functions, TURNS)
 
 
@@ -98,14 +99,6 @@ def make_shadow_rays(scene):
     rays, active = si.spawn_ray(ds.d), si.is_valid()
     dr.eval(rays, active)
     return rays, active
-
-
-def finish(blocked):
-    """Run the kernel of an array and wait for its end."""
-    import drjit as dr
-
-    dr.eval(blocked)
-    dr.sync_thread()
 
 
 def claim_faster(form, ratios):

@@ -31,7 +31,9 @@ from brdfkit.theses.ergun2015.printed_forms import (
     claim_best_printed,
     claim_matte_printed,
     claim_near_printed,
+    count_good,
     describe_counts,
+    is_best,
     make_printed_integrators,
     name_mixture,
 )
@@ -132,17 +134,14 @@ def render_pictures(made, light, bsdf, methods):
 
 def count_good_scenes(by_kind, method, filter_="mips"):
     """Return how many scenes a method has over 30 dB, of 8-bit sRGB."""
-    return int((by_kind[f"{method}, {filter_}"][:, 0] >= GOOD).sum())
+    return count_good(by_kind[f"{method}, {filter_}"])
 
 
 def claim_best(by_kind):
     """Claim that kernels have more scenes over 30 dB than other methods, by filter of the map."""
     counts = {f: {m: count_good_scenes(by_kind, m, f) for m in PRINTED} for f in FILTERS}
     near = CLOSE * count_scenes(by_kind)
-    leads = {
-        (f,): by["kde"] - max(n for m, n in by.items() if m != "kde") > near
-        for f, by in counts.items()
-    }
+    leads = {(f,): is_best(by, near) for f, by in counts.items()}
     _, verdict = judge_over_grid(("filter",), leads)
     return Claim(
         "Of three methods, kernels (KDE) have most scenes over 30 dB: brdfkit's forms.",

@@ -16,7 +16,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 from brdfkit.theses.page import Picture, Section, Table
-from brdfkit.theses.timing import compare_times, measure_in_turns
+from brdfkit.theses.timing import compare_times, measure_in_turns, wait_for
 
 SECONDS = 60
 WIDTH, DRAWS, TURNS = 1 << 18, 8, 15  # threads, samples of each, and measurements
@@ -119,8 +119,7 @@ def draw_many(draw):
     _, total, _ = dr.while_loop(
         (mi.UInt32(0), mi.Float(0), mi.PCG32(WIDTH)), lambda i, *_: i < DRAWS, add
     )
-    dr.eval(total)
-    dr.sync_thread()
+    wait_for(total)
 
 
 def count_bytes(sampler):

@@ -3,6 +3,7 @@
 import drjit as dr
 
 from brdfkit.mitsuba_bridge import phase_functions
+from brdfkit.theses.timing import wait_for
 
 DRAWS, REPEATS = 1 << 20, 16  # threads, and draws of each, whose time is measured
 SIZE, SPP = 256, 16  # pixels along an edge of the measured picture, and samples of each
@@ -102,7 +103,6 @@ def prepare_draws(draw):
 
         state = mi.UInt32(0), mi.Float(0), numbers
         _, total, _ = dr.while_loop(state, lambda i, *_: i < REPEATS, add_draw)
-        dr.eval(total)
-        dr.sync_thread()
+        wait_for(total)
 
     return draw_all

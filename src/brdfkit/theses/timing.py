@@ -49,6 +49,14 @@ def compare_times(times: ArrayLike, others: ArrayLike) -> Ratio:
     return Ratio(*(float(np.exp(logs.mean() + side * wide)) for side in (0, -1, 1)))
 
 
+def wait_for(*arrays: Any) -> None:
+    """Run the kernel of Dr.Jit arrays and wait for its end."""
+    import drjit as dr
+
+    dr.eval(*arrays)
+    dr.sync_thread()
+
+
 def measure_in_turns(
     functions: Mapping[Any, Callable[[], Any]], turns: int
 ) -> dict[Any, FloatArray]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitMask, JitVector
-from brdfkit.lighting.sampling.block_slopes import line_density, sample_line_density
+from brdfkit.lighting.sampling.block_lookups import BlockDensities
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 
 
@@ -84,17 +84,10 @@ class AliasBlocks:
     ) -> None:
         self.count = len(blocks)
         self.table = AliasTable(*make_alias_table(shares))
-        self.boxes, self.lines = Rows(blocks), Rows(np.column_stack([densities, slopes]))
-        self.nbytes = self.table.nbytes + 28 * self.count
+        self.densities = BlockDensities(blocks, densities, slopes)
+        self.nbytes = self.table.nbytes + self.densities.nbytes
 
     def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
         """Draw a point of the map by uniform numbers `u`; return (x, y, density)."""
-        import drjit as dr
-        import mitsuba as mi
-
         block, remainder = self.table.draw_entry(u.x, 0, self.count, active)
-        box = self.boxes.at(block, mi.Vector4f, active)
-        lines = self.lines.at(block, mi.Vector3f, active)
-        s, t = sample_line_density(remainder, lines.y), sample_line_density(u.y, lines.z)
-        density = lines.x * line_density(s, lines.y) * line_density(t, lines.z)
-        return dr.lerp(box.x, box.y, s), dr.lerp(box.z, box.w, t), density
+        return self.densities.sample_in_block(block, remainder, u.y, active)

@@ -16,7 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, IntArray
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Sums:
 
     def __init__(self, values: FloatArray) -> None:
         self.values = values
-        self.table, self.squares = _summed_area_table(values), _summed_area_table(values**2)
+        self.table, self.squares = summed_area_table(values), summed_area_table(values**2)
         self.rounding = 1e-14 * self.squares[-1, -1]  # largest rounding error of sums of squares
 
     def sum_moments(self, boxes: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -90,7 +90,7 @@ class Sums:
 
 def block_sums(values: FloatArray, boxes: IntArray) -> FloatArray:
     """Return the sums (n,) of `values` (height, width) over each of the `boxes` (n, 4)."""
-    return _sum_boxes(_summed_area_table(values), boxes)
+    return _sum_boxes(summed_area_table(values), boxes)
 
 
 def squared_error(sums: Sums, boxes: IntArray) -> FloatArray:
@@ -130,7 +130,7 @@ CRITERIA = {  # Error measures of blocks by name; the block with the largest err
 }
 
 
-def _summed_area_table(values: FloatArray) -> FloatArray:
+def summed_area_table(values: AnyArray) -> FloatArray:
     """Return a table (height + 1, width + 1): entry (y, x) sums all rows < y and columns < x."""
     table = np.zeros((values.shape[0] + 1, values.shape[1] + 1))
     np.cumsum(values, axis=1, out=table[1:, 1:])
