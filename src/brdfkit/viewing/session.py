@@ -26,6 +26,7 @@ class Session(PictureLoop):
 
     def __init__(self, application: Application) -> None:
         super().__init__(application, application.first_state())
+        self.answered = 0  # the page's number of the message that was handled last
         self.open(self.state)
 
     def open(self, state: State) -> None:
@@ -53,6 +54,7 @@ class Session(PictureLoop):
         """Return the answers to a message of the page; an error becomes a message, too."""
         with self.lock:
             try:
+                self.answered = to_whole_number("message", message.get("message", self.answered), 0)
                 return self._answer(message, data)
             except Exception as error:  # the page must hear of a defect of ours, too
                 return [describe_error(error), self.describe_state()]
@@ -119,8 +121,9 @@ class Session(PictureLoop):
         return message | self.describe_state()[0] | own, buffers
 
     def describe_state(self) -> Message:
-        """Return the message "state"."""
-        return {"type": "state", "state": self.state} | self.steps.describe(), []
+        """Return the message "state", with the number of the message that it answers."""
+        own = {"type": "state", "state": self.state, "answered": self.answered}
+        return own | self.steps.describe(), []
 
     def _set(self, message: dict[str, Any]) -> list[Message]:
         changes, moving = message.get("changes"), bool(message.get("moving"))

@@ -1,6 +1,5 @@
 // The page's side of the conversation with Python: messages, the state, and what is being dragged.
 
-const SETTLING = 400; // ms for which Python's answers to a drag's early steps are not believed
 const PAUSE = 350; // ms without a change after which turning a wheel or holding a key has ended
 
 /** Return the bytes of a buffer, which a carrier gives as an ArrayBuffer or as a view of one. */
@@ -33,8 +32,10 @@ function createSession(model) {
   session.emit = (type, ...details) => {
     for (const listener of listeners.get(type) || []) listener(...details);
   };
+  session.sent = 0; // the number of the last message
   session.send = (content, buffers) => {
-    model.send(content, undefined, buffers);
+    session.sent += 1;
+    model.send({ ...content, message: session.sent }, undefined, buffers);
     session.emit("sent", content);
   };
   const edits = createEdits(session);
@@ -55,7 +56,7 @@ function createSession(model) {
       session.emit("controls", content);
       session.emit("state", new Set(Object.keys(session.state)));
     } else if (content.type === "state") {
-      edits.accept(content.state);
+      edits.accept(content);
       session.emit("history", content);
     } else {
       session.emit(content.type, content, bytes);
@@ -76,15 +77,18 @@ function createSession(model) {
  *
  * - `change(changes)`: at once, one step of undo;
  * - `drag(changes)`, repeatedly, then `finish()`: the steps between are sent once a frame;
- * - `nudge(changes)`: as `drag`, and finishes by itself after a pause (wheel, held key, typing).
+ * - `nudge(changes)`: as `drag`, and finishes by itself after a pause (wheel, held key, typing);
+ * - `command(type)`: let Python change the state, as by "undo".
+ *
+ * Python says with each state which message it answers. What it said before it had the last change
+ * or command is old, and is not shown.
  */
 function createEdits(session) {
   let unsent = {}; // changes since the last message
   let gesture = {}; // all changes of the drag that is under way
   let frame = 0;
   let pause = 0;
-  const held = new Map(); // name → time until which Python's value is not believed
-  let postponed = {}; // Python's values of the names that are held
+  let awaited = 0; // the number of the last change or command
 
   function apply(changes) {
     Object.assign(session.state, changes);
@@ -97,9 +101,13 @@ function createEdits(session) {
     unsent = {};
   }
 
+  function sendAndAwait(content) {
+    session.send(content);
+    awaited = session.sent;
+  }
+
   session.drag = (changes) => {
     clearTimeout(pause);
-    for (const name of Object.keys(changes)) held.set(name, Infinity);
     Object.assign(unsent, changes);
     Object.assign(gesture, changes);
     frame = frame || requestAnimationFrame(sendUnsent);
@@ -113,10 +121,7 @@ function createEdits(session) {
     const changes = gesture;
     gesture = {};
     unsent = {};
-    if (!Object.keys(changes).length) return;
-    session.send({ type: "set", changes, moving: false });
-    for (const name of Object.keys(changes)) held.set(name, performance.now() + SETTLING);
-    setTimeout(believe, SETTLING + 10);
+    if (Object.keys(changes).length) sendAndAwait({ type: "set", changes, moving: false });
   };
 
   session.nudge = (changes) => {
@@ -130,45 +135,20 @@ function createEdits(session) {
     session.finish();
   };
 
-  /** Send a command that changes the state in Python, such as "undo", and believe its answer. */
   session.command = (type) => {
     session.finish();
-    held.clear();
-    postponed = {};
-    session.send({ type });
+    sendAndAwait({ type });
   };
 
-  /** Take over what Python said meanwhile about names that are no longer held. */
-  function believe() {
-    const now = performance.now();
-    const changes = {};
-    for (const [name, until] of held) {
-      if (until > now) continue;
-      held.delete(name);
-      if (name in postponed) changes[name] = postponed[name];
-      delete postponed[name];
-    }
-    if (Object.keys(changes).length) apply(changes);
-  }
-
   return {
-    accept(state) {
-      const now = performance.now();
-      const changes = {};
-      for (const [name, value] of Object.entries(state)) {
-        if (equal(value, session.state[name])) {
-          delete postponed[name];
-        } else if (held.get(name) > now) {
-          postponed[name] = value;
-        } else {
-          changes[name] = value;
-        }
-      }
+    accept({ state, answered }) {
+      if (answered < awaited) return;
+      const isNew = ([name, value]) => !(name in gesture) && !equal(value, session.state[name]);
+      const changes = Object.fromEntries(Object.entries(state).filter(isNew));
       if (Object.keys(changes).length) apply(changes);
     },
     forget() {
-      [unsent, gesture, postponed] = [{}, {}, {}];
-      held.clear();
+      [unsent, gesture, awaited] = [{}, {}, 0];
     },
     stop() {
       cancelAnimationFrame(frame);
