@@ -7,6 +7,8 @@ from .checks import check as check
 from .core.errors import BrdfkitError as BrdfkitError
 from .core.interrupts import Interrupted as Interrupted
 from .core.progress_bar import progress as progress
+from .exporting.export import Export as Export
+from .exporting.export import export as export
 from .fitting import uncertainty as uncertainty
 from .fitting.compare import Comparison as Comparison
 from .fitting.compare import compare as compare

@@ -14,7 +14,7 @@ from brdfkit.materials.loading import save_and_read
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.evidence import describe_evidence
 from brdfkit.materials.measured.spectrum_to_rgb import format_channels
-from brdfkit.materials.measured.tabulation import choose_table_shape, tabulate
+from brdfkit.materials.measured.tabulation import ANISOTROPIC, ISOTROPIC, tabulate
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
 
 # The BRDFs of a material and its converted file are compared at this number of random pairs of
@@ -82,17 +82,20 @@ def convert(material: MaterialLike, path: str | Path) -> Conversion:
     return Conversion(Path(path), (note, *list_changes(data, save_and_read(data, path))))
 
 
-def evaluate_on_grid(thing: Material) -> Measured:
+def evaluate_on_grid(
+    thing: Material, shapes: tuple[tuple[int, ...], tuple[int, ...]] = (ISOTROPIC, ANISOTROPIC)
+) -> Measured:
     """Return a fit or a model as a `Measured`, sampled at the cell centres of a table.
 
     Between the samples the `Measured` evaluates `thing` itself, so nothing is interpolated.
+    `shapes` are the numbers of cells of the table of an isotropic and of an anisotropic material.
     """
     model: Any = getattr(thing, "model", thing)
     free = getattr(model, "free_values", {})
     anisotropic = any(model.parameters[name].follows for name in free)
     up = np.array([[0.0, 0.0, 1.0]])
     channels = thing.eval(up, up).shape[1]
-    table = tabulate(thing.eval, channels, choose_table_shape(anisotropic))
+    table = tabulate(thing.eval, channels, shapes[anisotropic])
     wi, wo = (w.reshape(-1, 3) for w in table.directions())
     values = table.values.reshape(-1, channels)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)

@@ -1,0 +1,77 @@
+"""`brdfkit export`: writes a fitted material for another renderer."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import click
+
+from brdfkit.cli.console import Console
+from brdfkit.cli.options import output_option, writing_options
+from brdfkit.cli.settings import values_option
+from brdfkit.core.errors import BrdfkitError
+
+
+@click.command()
+@click.argument("thing", required=False, metavar="[FIT|MODEL]")
+@click.argument("target", required=False, metavar="[TARGET]")
+@output_option("File to write; its suffix is the target's. Default: FIT, and this suffix.")
+@values_option
+@click.option(
+    "--accept-loss", is_flag=True, help="Write the file even if its ball differs visibly (ΔE > 2)."
+)
+@writing_options
+def export(
+    thing: str | None,
+    target: str | None,
+    output: Path | None,
+    values: tuple[str, ...],
+    accept_loss: bool,
+    console: Console,
+) -> None:
+    """Write a fitted material for another renderer.
+
+    FIT is a saved fit, such as paint/ggx.json; MODEL is the name of a model, whose values --set
+    gives. What TARGET can hold is written exactly. Anything else is fitted to TARGET's own formula,
+    and the command says what was lost. Without arguments, it lists the targets and what they hold.
+    """
+    from brdfkit.cli.arguments import find_material
+    from brdfkit.exporting.export import export as export_material
+    from brdfkit.exporting.targets import find_target, list_targets
+
+    if thing is None:
+        _print_targets(console)
+        return
+    if target is None:
+        names = ", ".join(list_targets())
+        raise BrdfkitError(f"Name a target to export {thing} to: {names}.")
+    aim = find_target(target)
+    path = output or Path(f"{Path(thing).stem}{aim.suffix}")
+    settings = [word for value in values for word in ("--set", value)]
+    accepted = ["--accept-loss"] * accept_loss
+    words = ["brdfkit", "export", thing, target, "-o", str(path), *settings, *accepted]
+    with console.progress(f"export {thing}"):
+        material = find_material(thing, values)
+        done = export_material(
+            material, target, path, accept_loss=accept_loss, command=shlex.join(words)
+        )
+    if console.as_json:
+        lost = {"log_error": done.log_error, "delta_e": done.delta_e, "changes": done.changes}
+        console.print_json({"written": done.paths, "target": target, **lost})
+    else:
+        console.output.print(f"written: {done}")
+
+
+def _print_targets(console: Console) -> None:
+    """Print a table of the targets and what each one holds."""
+    from brdfkit.exporting.target import COLUMNS
+    from brdfkit.exporting.targets import list_targets
+
+    targets = list_targets().values()
+    if console.as_json:
+        console.print_json({t.name: {"file": t.suffix, **t.holds} for t in targets})
+        return
+    rows = [(t.name, t.suffix, t.title, *(t.holds[c] for c in COLUMNS)) for t in targets]
+    console.print_table(["target", "file", "what it is", *COLUMNS], rows)
+    console.output.print("A material: brdfkit export FIT TARGET -o FILE")

@@ -1,0 +1,38 @@
+"""Makes the comment at the head of an exported file: where the material is from, and its widths."""
+
+from __future__ import annotations
+
+from brdfkit.core import catalogue
+from brdfkit.core.version import __version__
+from brdfkit.exporting.ggx_sum import to_ggx_sum
+from brdfkit.exporting.loss import Loss
+from brdfkit.exporting.target import Held
+from brdfkit.model import Model
+from brdfkit.regression import Fit
+
+
+def make_comment(thing: Fit | Model, held: Held, loss: Loss, command: str) -> list[str]:
+    """Return the lines of the comment: source, licence, widths, losses, version and command."""
+    lines = [f"{_describe_source(thing)}, exported by brdfkit {__version__}"]
+    if isinstance(thing, Fit) and (licence := find_licence(thing.data)):
+        lines.append(f"Licence of the measured data: {licence}")
+    content = to_ggx_sum(held.drawn) if isinstance(held.drawn, Model) else None
+    for number, lobe in enumerate(content.lobes if content else (), 1):
+        widths = f"alpha_u = {lobe.alpha_u:.6g}, alpha_v = {lobe.alpha_v:.6g}"
+        lines.append(f"Highlight {number}: GGX, {widths} (along x, the tangent, and y)")
+    lost = f"Lost: {'; '.join(held.changes)} ({loss})"
+    lines.append("Nothing was lost." if loss.is_zero else lost)
+    return [*lines, f"Made by: {command}"]
+
+
+def _describe_source(thing: Fit | Model) -> str:
+    """Return in words what was exported."""
+    if isinstance(thing, Fit):
+        return f"{thing.model.label()} fitted to {thing.data}"
+    return f"The model {thing.label()}"
+
+
+def find_licence(data: str) -> str:
+    """Return the licence of a material that brdfkit knows by its name, and "" of any other."""
+    known = catalogue.list_materials()
+    return known[data].licence if data in known else ""

@@ -1,0 +1,55 @@
+"""Fills the templates of exported files: texts in the languages of the targets."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from brdfkit.core.files import write_safely
+
+
+def write_template(template: str, path: Path, **content: Any) -> None:
+    """Write the text of a `template`, a file of `templates/`, filled with `content`."""
+    text = _make_environment().get_template(template).render(**content)
+    write_text(path, text)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text, completely or not at all."""
+    with write_safely(path) as beside:
+        Path(beside).write_text(text, encoding="utf-8", newline="\n")
+
+
+@cache
+def _make_environment() -> Any:
+    """Return the environment of jinja2 that fills the templates."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader(__package__),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters |= {"number": write_number, "numbers": write_numbers}
+    return environment
+
+
+def write_number(value: float) -> str:
+    """Return a number with a decimal point, which C-like languages need, and all its digits.
+
+    >>> write_number(1), write_number(0.1)
+    ('1.0', '0.1')
+    """
+    return repr(float(value))
+
+
+def write_numbers(values: Any) -> str:
+    """Return numbers with commas between them.
+
+    >>> write_numbers((1, 0.5))
+    '1.0, 0.5'
+    """
+    return ", ".join(map(write_number, values))

@@ -1,0 +1,67 @@
+"""Measures how far what a target draws is from the material: log error, and ΔE of a ball."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.array_types import FloatArray
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.images.ball.ball import draw_ball
+from brdfkit.images.errors.colour_difference import ciede2000
+from brdfkit.materials.resolve import Material
+
+# The BRDFs are compared at this number of random pairs of directions, to this angle to the normal
+PAIRS, LARGEST_ANGLE = 4000, np.radians(80)
+FLOOR = 1e-3  # is added to f cosθ_i cosθ_o, as in the loss "log"
+SIDE = 64  # pixels of the ball's picture
+
+
+@dataclass(frozen=True)
+class Loss:
+    """How far what a target draws is from the material.
+
+    `log_error`: RMS difference of ln(f cosθ_i cosθ_o + 0.001) over random pairs of directions, as
+    in the loss "log": 0.1 is about 10 %; `delta_e`: the mean colour difference ΔE2000 of the
+    pixels of a ball in a studio's light.
+    """
+
+    log_error: float
+    delta_e: float
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether both materials are equal, but for rounding."""
+        return self.log_error < 1e-6 and self.delta_e < 1e-3
+
+    def __str__(self) -> str:
+        return f"log error {self.log_error:.2g}, mean ΔE {self.delta_e:.2g}"
+
+
+def measure_loss(material: Material, drawn: Material) -> Loss:
+    """Compare what a target draws with the `material`, both in linear sRGB."""
+    if drawn is material:
+        return Loss(0.0, 0.0)
+    wi, wo = draw_direction_pairs(PAIRS)
+    logs = [
+        np.log(np.maximum(thing.eval(wi, wo), 0) * (wi[:, 2:] * wo[:, 2:]) + FLOOR)
+        for thing in (material, drawn)
+    ]
+    return Loss(float(np.sqrt(np.mean((logs[1] - logs[0]) ** 2))), compare_balls(material, drawn))
+
+
+def draw_direction_pairs(count: int, seed: int = 0) -> tuple[FloatArray, FloatArray]:
+    """Draw pairs of directions, uniform in both angles, to 80° from the normal."""
+    random = np.random.default_rng(seed)
+    theta = random.uniform(0, LARGEST_ANGLE, (2, count))
+    wi, wo = from_angles(theta, random.uniform(0, 2 * np.pi, (2, count)))
+    return wi, wo
+
+
+def compare_balls(material: Material, drawn: Material) -> float:
+    """Return the mean colour difference of two materials' balls, over the pixels of the ball."""
+    pictures = [draw_ball(thing.eval, SIDE) for thing in (material, drawn)]
+    cover = pictures[0][1]
+    first, second = (np.broadcast_to(p, (SIDE, SIDE, 3)) for p, _ in pictures)
+    return float(np.average(ciede2000(first, second), weights=cover))

@@ -1,0 +1,27 @@
+"""Python: the formula of the BRDF as a function of NumPy arrays, with the fitted values."""
+
+from pathlib import Path
+
+from brdfkit.exporting.filling import write_template
+from brdfkit.exporting.target import Held, Target, hold_ggx_sum
+
+
+def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
+    """Write the file."""
+    write_template("ggx_sum.py.jinja", path, sum=held.content, comment=comment)
+    return [path]
+
+
+TARGET = Target(
+    name="python",
+    title="A function of NumPy arrays",
+    suffix=".py",
+    holds={
+        "diffuse": "Lambert",
+        "highlights": "GGX, any number, any colour",
+        "anisotropy": "yes",
+        "else": "nothing",
+    },
+    hold=hold_ggx_sum,
+    write=write,
+)
