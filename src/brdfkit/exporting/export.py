@@ -60,7 +60,7 @@ def export(
     path: str | Path,
     *,
     accept_loss: bool = False,
-    command: str = "",
+    command: str | None = None,
 ) -> Export:
     """Write a fitted material for another renderer, and say what it lost.
 
