@@ -1,4 +1,4 @@
-# make demo | notebook | ipynb | test | quick | lint | bench | docs | site | wheel; everything happens in .venv, nothing else is needed
+# make demo | notebook | ipynb | test | quick | oracles | lint | bench | docs | site | wheel; everything happens in .venv, nothing else is needed
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin
@@ -6,7 +6,7 @@ RUN := $(VENV)/bin
 # compiles is kept, because tests start processes that load the whole library
 PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(RUN)/python -m pytest -n 2
 
-.PHONY: demo notebook ipynb test quick lint bench docs site wheel clean
+.PHONY: demo notebook ipynb test quick oracles lint bench docs site wheel clean
 
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -34,6 +34,9 @@ test: lint
 
 quick: $(VENV)/.ready
 	$(PYTEST) -m quick
+
+oracles: $(VENV)/.ready
+	$(PYTEST) -m oracles
 
 lint: $(VENV)/.ready
 	$(RUN)/ruff check
