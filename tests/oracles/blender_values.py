@@ -30,6 +30,7 @@ of Cycles 5.0, by these measurements (r is a node's roughness, A its anisotropy,
 - The distribution `GGX` scatters once; the default `MULTI_GGX` adds light, by the view alone.
 - Principled, not metallic: a dielectric's F by the refractive index, and the diffuse part times 1
   less the highlight's albedo in the direction of the camera. Hence it is not reciprocal.
+- Diffuse with a roughness is EON, but for ρ³ instead of ρ² in the second term.
 - OSL: generalized_schlick_bsdf(N, T, reflection, transmission, α_x, α_y, F₀, F₉₀, 5, "ggx") cuts
   F₀ to 0..1, but neither F₉₀ nor a factor of the closure. Without a tangent, α_x ≠ α_y draws black.
 """
