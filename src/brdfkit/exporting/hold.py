@@ -9,6 +9,7 @@ from brdfkit.exporting.loss import Loss, measure_loss
 from brdfkit.exporting.target import Held, Target
 from brdfkit.fitting.fit import fit
 from brdfkit.materials.converting import evaluate_on_grid
+from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.regression import Fit
 
@@ -44,7 +45,7 @@ def refit(model: Model, target: Target) -> tuple[Held, Loss]:
     The target's candidates are fitted to the model's values at the cells of a table; the one whose
     ball looks most alike is taken.
     """
-    data = evaluate_on_grid(model, TABLE_SHAPES)
+    data = sample_on_grid(model)
     best: tuple[Held, Loss] | None = None
     for label in target.candidates:
         held = target.hold(fit(data, label, loss=LOSS).rgb)
@@ -55,3 +56,8 @@ def refit(model: Model, target: Target) -> tuple[Held, Loss]:
             best = held, loss
     assert best is not None, "every target has a candidate"
     return best
+
+
+def sample_on_grid(model: Model) -> Measured:
+    """Return the values of a model at the cells of a small table."""
+    return evaluate_on_grid(model, TABLE_SHAPES)

@@ -1,0 +1,155 @@
+"""Exports: every target × every fit, what was lost, and errors in a sentence."""
+
+import json
+import re
+import runpy
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from six_fits import SIX_FITS, make_fit
+
+import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.exporting import hold as holding
+from brdfkit.exporting import loss as measuring
+from brdfkit.exporting.loss import draw_direction_pairs, measure_loss
+from brdfkit.exporting.target import COLUMNS
+from brdfkit.exporting.targets import list_targets
+
+TARGETS = list_targets()
+PAIRS = draw_direction_pairs(200, seed=1)
+
+
+@pytest.fixture(autouse=True)
+def few_values(monkeypatch):
+    """Fits to few values and small balls, because these tests are not about the quality of fits."""
+    monkeypatch.setattr(measuring, "SIDE", 16)
+    monkeypatch.setattr(holding, "TABLE_SHAPES", ((16, 8, 8), (6, 12, 6, 6)))
+    monkeypatch.setattr(holding, "LOSS", "cbrt")
+
+
+@pytest.fixture
+def cli(tmp_path, monkeypatch):
+    """A function that runs a command in an empty folder: its exit status and its output."""
+    monkeypatch.chdir(tmp_path)
+
+    def command(*words):
+        done = CliRunner().invoke(main, words)
+        return done.exit_code, done.output
+
+    return command
+
+
+# Tables take seconds, whatever the material
+TABLES = {"csv", "mitsuba"}
+
+
+@pytest.mark.parametrize(
+    ("target", "name"),
+    [(t, n) for t in TARGETS for n in SIX_FITS if t not in TABLES or n in ("plastic", "brushed")],
+)
+def test_a_file_says_its_source_and_what_was_lost(target, name, tmp_path):
+    fit, aim = make_fit(name), TARGETS[target]
+    done = bk.export(fit, target, tmp_path / f"a{aim.suffix}", accept_loss=True)
+    assert all(path.is_file() for path in done.paths)
+    assert done.paths[0] == tmp_path / f"a{aim.suffix}"
+    loss = measure_loss(fit, done.drawn)
+    assert (done.log_error, done.delta_e) == (loss.log_error, loss.delta_e)
+    assert bool(done.changes) == (not loss.is_zero), done.changes
+    text = b"".join(path.read_bytes() for path in done.paths).decode("utf-8", "replace")
+    for word in (
+        fit.label(),
+        f"brdfkit {bk.__version__}",
+        f"brdfkit export {fit.label()} {target}",
+    ):
+        assert word in text, word
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_target_is_described(target):
+    assert set(TARGETS[target].holds) == set(COLUMNS)
+    assert TARGETS[target].name == target
+
+
+@pytest.mark.parametrize("name", SIX_FITS)
+def test_the_function_in_python_has_the_values_that_were_told(name, tmp_path):
+    done = bk.export(make_fit(name), "python", tmp_path / "a.py", accept_loss=True)
+    brdf = runpy.run_path(str(done.paths[0]))["brdf"]
+    np.testing.assert_allclose(brdf(*PAIRS), done.drawn.eval(*PAIRS), rtol=1e-12)
+    assert len(done.paths[0].read_text().splitlines()) < 70
+
+
+def test_a_saved_fit_tells_its_data_and_licence(cli, tmp_path):
+    bk.save(bk.fit("red_plastic", "lambert"), tmp_path / "rot, ähnlich.json")
+    status, output = cli("export", "rot, ähnlich.json", "python")
+    assert (status, output) == (0, "written: rot, ähnlich.py (nothing lost)\n")
+    text = (tmp_path / "rot, ähnlich.py").read_text()
+    assert "lambert fitted to red_plastic" in text
+    assert "Licence of the measured data: BSD-3-Clause" in text
+    assert "Made by: brdfkit export 'rot, ähnlich.json' python -o 'rot, ähnlich.py'" in text
+
+
+def test_the_same_command_makes_the_same_file(cli, tmp_path):
+    words = "export", "ggx", "glsl", "--set", "alpha_u=0.3", "-o", "a.glsl"
+    cli(*words)
+    before = (tmp_path / "a.glsl").read_bytes()
+    assert cli(*words)[0] == 0
+    assert (tmp_path / "a.glsl").read_bytes() == before
+    assert b"--set alpha_u=0.3" in before
+
+
+def test_a_visible_loss_is_refused_until_it_is_accepted(cli, tmp_path):
+    words = "export", "eon", "python", "--set", "roughness=1", "-o", "a.py"
+    status, output = cli(*words)
+    assert status == 2
+    assert re.search(r"mean ΔE of \d+\.\d .*refitted as ggx.*--accept-loss", output, re.S), output
+    assert not list(tmp_path.iterdir())
+    status, output = cli(*words, "--accept-loss", "--json")
+    assert status == 0
+    assert json.loads(output)["delta_e"] > 2
+    assert "--accept-loss" in (tmp_path / "a.py").read_text()
+
+
+def test_targets_are_listed(cli):
+    status, output = cli("export", "--json")
+    assert status == 0
+    assert list(json.loads(output)) == list(TARGETS)
+
+
+WRONG = {
+    "target": (("ggx", "maya", "-o", "a.py"), "no target 'maya'"),
+    "no target": (("ggx",), "Name a target to export ggx to: "),
+    "suffix": (("ggx", "python", "-o", "a.txt"), "is written as .py; choose a.py"),
+    "measured": (("car_paint", "python", "-o", "a.py"), "was measured; fit a model to it first"),
+    "damaged": (("damaged.json", "python", "-o", "a.py"), "damaged.json"),
+    "foreign": (("foreign.json", "python", "-o", "a.py"), "foreign.json"),
+    "folder": (("ggx", "python", "-o", "none/a.py"), "there is no folder"),
+    "protected": (("ggx", "python", "-o", "/proc/a.py"), "/proc/a.py"),
+    "existing": (("ggx", "python", "-o", "kept.py"), "exists already"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_an_error_is_a_sentence(case, cli, tmp_path):
+    words, says = WRONG[case]
+    (tmp_path / "damaged.json").write_text('{"model": ')
+    (tmp_path / "foreign.json").write_text('{"asset": {"version": "2.0"}}')
+    (tmp_path / "kept.py").write_text("x = 1\n")
+    status, output = cli("export", *words)
+    assert status == 2
+    assert says in " ".join(output.split())
+    assert "Traceback" not in output
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["damaged.json", "foreign.json", "kept.py"]
+
+
+def test_weights_in_a_spectrum_become_rgb(tmp_path):
+    model = bk.models()["ggx"](wavelengths=[450, 550, 650], diffuse_reflectance=[0.1, 0.2, 0.3])
+    done = bk.export(model, "python", tmp_path / "a.py")
+    assert done.changes == ("3 wavelengths became linear sRGB",)
+
+
+def test_a_bsdf_of_mitsuba_is_refused():
+    with pytest.raises(BrdfkitError, match="is no fit and no model of brdfkit"):
+        bk.export({"type": "diffuse"}, "python", "a.py")
