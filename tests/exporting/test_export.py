@@ -1,8 +1,10 @@
 """Exports: every target × every fit, what was lost, and errors in a sentence."""
 
+import ast
 import json
 import re
 import runpy
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -148,6 +150,16 @@ def test_weights_in_a_spectrum_become_rgb(tmp_path):
     model = bk.models()["ggx"](wavelengths=[450, 550, 650], diffuse_reflectance=[0.1, 0.2, 0.3])
     done = bk.export(model, "python", tmp_path / "a.py")
     assert done.changes == ("3 wavelengths became linear sRGB",)
+
+
+@pytest.mark.parametrize("target", ["python", "blender"])
+def test_a_name_in_a_file_becomes_no_code(target, tmp_path):
+    fit = bk.fit("red_plastic", "lambert")
+    harm = '"""\nraise SystemExit(3)\n"""\u2028raise SystemExit(3)\r'
+    file = tmp_path / "a.py"
+    bk.export(replace(fit, data=harm), target, file)
+    tree = ast.parse(file.read_text())
+    assert not [node for node in ast.walk(tree) if isinstance(node, ast.Raise)]
 
 
 def test_a_bsdf_of_mitsuba_is_refused():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from brdfkit.core import catalogue
+from brdfkit.core.names import to_printable
 from brdfkit.core.version import __version__
 from brdfkit.exporting.ggx_sum import to_ggx_sum
 from brdfkit.exporting.loss import Loss
@@ -22,7 +23,21 @@ def make_comment(thing: Fit | Model, held: Held, loss: Loss, command: str) -> li
         lines.append(f"Highlight {number}: GGX, {widths} (along x, the tangent, and y)")
     lost = f"Lost: {'; '.join(held.changes)} ({loss})"
     lines.append("Nothing was lost." if loss.is_zero else lost)
-    return [*lines, f"Made by: {command}"]
+    return [*map(to_plain_line, lines), to_plain_line(f"Made by: {command}")]
+
+
+def to_plain_line(text: str) -> str:
+    """Return a text on one line that ends no comment of any language.
+
+    A name in a file that somebody sent must not become code.
+
+    >>> to_plain_line("a \\\\ and */")
+    'a / and * /'
+    """
+    line = to_printable(" ".join(text.split()))
+    for end, harmless in (("\\", "/"), ('"""', "'''"), ("*/", "* /"), ("-->", "-- >")):
+        line = line.replace(end, harmless)
+    return line
 
 
 def _describe_source(thing: Fit | Model) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,13 @@ def write_text(path: Path, text: str) -> None:
     """Write a text, completely or not at all."""
     with write_safely(path) as beside:
         Path(beside).write_text(text, encoding="utf-8", newline="\n")
+
+
+def write_bytes(path: Path, content: bytes) -> Path:
+    """Write a file, completely or not at all; return its path."""
+    with write_safely(path) as beside:
+        beside.write_bytes(content)
+    return path
 
 
 @cache
@@ -53,3 +61,13 @@ def write_numbers(values: Any) -> str:
     '1.0, 0.5'
     """
     return ", ".join(map(write_number, values))
+
+
+def to_identifier(name: str) -> str:
+    """Return a name of letters, digits and underscores for a shader, close to the given one.
+
+    >>> to_identifier("roter Lack, 2")
+    'roter_Lack_2'
+    """
+    plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
+    return plain if plain[:1].isalpha() else f"material_{plain}".rstrip("_")

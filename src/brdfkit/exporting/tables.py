@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from brdfkit.core.files import write_safely
 from brdfkit.exporting.target import Held
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
@@ -23,10 +22,3 @@ def hold_table(model: Model, material: Model | Measured, suffix: str, words: str
         save(material, file)
         drawn, content = load(file), file.read_bytes()
     return Held(drawn, content, (words,))
-
-
-def write_bytes(path: Path, content: bytes) -> Path:
-    """Write a file, completely or not at all; return its path."""
-    with write_safely(path) as beside:
-        beside.write_bytes(content)
-    return path

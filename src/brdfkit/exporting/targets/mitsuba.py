@@ -6,9 +6,9 @@ beside the scene file: Mitsuba has no microfacet plugin with Schlick's reflectan
 
 from pathlib import Path
 
-from brdfkit.exporting.filling import write_template
+from brdfkit.exporting.filling import write_bytes, write_template
 from brdfkit.exporting.ggx_sum import to_ggx_sum
-from brdfkit.exporting.tables import hold_table, write_bytes
+from brdfkit.exporting.tables import hold_table
 from brdfkit.exporting.target import Held, Target
 from brdfkit.model import Model
 
