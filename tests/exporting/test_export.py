@@ -14,22 +14,12 @@ from six_fits import SIX_FITS, make_fit
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.exporting import hold as holding
-from brdfkit.exporting import loss as measuring
 from brdfkit.exporting.loss import draw_direction_pairs, measure_loss
 from brdfkit.exporting.target import COLUMNS
 from brdfkit.exporting.targets import list_targets
 
 TARGETS = list_targets()
 PAIRS = draw_direction_pairs(200, seed=1)
-
-
-@pytest.fixture(autouse=True)
-def few_values(monkeypatch):
-    """Fits to few values and small balls, because these tests are not about the quality of fits."""
-    monkeypatch.setattr(measuring, "SIDE", 16)
-    monkeypatch.setattr(holding, "TABLE_SHAPES", ((16, 8, 8), (6, 12, 6, 6)))
-    monkeypatch.setattr(holding, "LOSS", "cbrt")
 
 
 @pytest.fixture
@@ -144,6 +134,14 @@ def test_an_error_is_a_sentence(case, cli, tmp_path):
     assert says in " ".join(output.split())
     assert "Traceback" not in output
     assert sorted(p.name for p in tmp_path.iterdir()) == ["damaged.json", "foreign.json", "kept.py"]
+
+
+def test_only_exportable_models_are_ranked(cli):
+    status, output = cli("fit", "red_plastic", "-m", "best", "--exportable", "blender", "--json")
+    assert status == 0
+    models = [row["model"] for row in json.loads(output)["ranking"]["models"]]
+    assert sorted(models) == ["ggx", "ggx+ggx", "lambert"]
+    assert cli("fit", "red_plastic", "-m", "ward", "--exportable", "blender")[0] == 2
 
 
 def test_weights_in_a_spectrum_become_rgb(tmp_path):

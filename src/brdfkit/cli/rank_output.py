@@ -19,12 +19,17 @@ IGNORED_OPTIONS = {"robust": "robust", "spectral": "spectral", "fixed": "fixed",
 
 
 def recommend_model(
-    names: list[str], material: Measured, how: Mapping[str, Any], console: Console
+    names: list[str],
+    material: Measured,
+    how: Mapping[str, Any],
+    console: Console,
+    ranked: list[str] | None = None,
 ) -> tuple[list[str], Ranking | None]:
     """Rank all models on a material, and print the ranking, if "best" is among the `names`.
 
     Returns the names with the recommended model instead of "best", and the ranking or None. `how`
-    are the settings of the fit. An interrupted ranking ends the command.
+    are the settings of the fit; `ranked` are the labels of the models to rank, None for all. An
+    interrupted ranking ends the command.
     """
     from brdfkit.fitting.ranking import rank
     from brdfkit.fitting.settings import require_no_sample_settings
@@ -38,7 +43,7 @@ def recommend_model(
             print_message(f"models are ranked without --{option}; the fit then uses it.")
     settings = {name: how[name] for name in ("loss", "max_angle", "seed")}
     with console.progress(f"rank models on {material.name}") as progress:
-        ranking = rank(material, **settings, progress=progress)
+        ranking = rank(material, ranked, **settings, progress=progress)
     _print_ranking(ranking, console)
     if len(ranking.rows) < ranking.requested:
         exit_interrupted(f"{len(ranking.rows)} of {ranking.requested} models are ranked")

@@ -8,9 +8,10 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.exporting.loss import Loss, measure_loss
 from brdfkit.exporting.target import Held, Target
 from brdfkit.fitting.fit import fit
+from brdfkit.fitting.ranking.ranking import list_default_models
 from brdfkit.materials.converting import evaluate_on_grid
 from brdfkit.materials.measured import Measured
-from brdfkit.model import Model
+from brdfkit.model import Model, labels
 from brdfkit.regression import Fit
 
 # Cells of the tables, of isotropic and anisotropic materials, to whose values forms are fitted.
@@ -61,3 +62,12 @@ def refit(model: Model, target: Target) -> tuple[Held, Loss]:
 def sample_on_grid(model: Model) -> Measured:
     """Return the values of a model at the cells of a small table."""
     return evaluate_on_grid(model, TABLE_SHAPES)
+
+
+def list_held_models(target: Target) -> list[str]:
+    """Return the labels of those models and sums, of all that `rank` compares, that a target holds.
+
+    A model counts if the target holds it with its default values, without changes.
+    """
+    held = {label: target.hold(labels.model(label)()) for label in list_default_models()}
+    return [label for label, one in held.items() if one and not one.changes]

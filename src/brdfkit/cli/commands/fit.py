@@ -51,6 +51,12 @@ if TYPE_CHECKING:
     help="For several FILEs: compute also each fit's error in directions held out and its "
     "picture's error, which doubles the time.",
 )
+@click.option(
+    "--exportable",
+    metavar="TARGET",
+    help="With -m best: rank only models that TARGET, such as blender, can hold; brdfkit export "
+    "lists the targets.",
+)
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
 @scene_options
@@ -64,6 +70,7 @@ def fit(
     output: Path | None,
     workers: int | None,
     judge: bool,
+    exportable: str | None,
     rendered: bool,
     spectral: bool,
     console: Console,
@@ -93,6 +100,7 @@ def fit(
         if name != BEST:
             labels.model(name)
     how |= {"seed": pictures["seed"], "spectral": spectral}
+    ranked = _list_exportable_models(exportable, models)
     if len(files) > 1:
         refuse_best(models)
         _refuse_mends(mends)
@@ -102,12 +110,27 @@ def fit(
     elif judge:
         raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
     else:
-        _fit_one_file(files[0], models, how, mends, output, pictures if rendered else None, console)
+        shown = pictures if rendered else None
+        _fit_one_file(files[0], models, ranked, how, mends, output, shown, console)
+
+
+def _list_exportable_models(target: str | None, names: list[str]) -> list[str] | None:
+    """Return the labels of the models to rank for an export, or None for all models."""
+    from brdfkit.cli.rank_output import BEST
+    from brdfkit.exporting.hold import list_held_models
+    from brdfkit.exporting.targets import find_target
+
+    if target is None:
+        return None
+    if BEST not in names:
+        raise BrdfkitError("--exportable chooses what -m best ranks; add -m best.")
+    return list_held_models(find_target(target))
 
 
 def _fit_one_file(
     file: str,
     names: list[str],
+    ranked: list[str] | None,
     how: dict[str, Any],
     mends: dict[str, bool],
     output: Path | None,
@@ -116,7 +139,8 @@ def _fit_one_file(
 ) -> None:
     """Fit models to one file, path-trace them unless `pictures` is None, and print the results.
 
-    `pictures` are the arguments of `brdfkit.render`.
+    `ranked`: labels of the models among which "best" is found, None for all; `pictures`: the
+    arguments of `brdfkit.render`.
     """
     from brdfkit.cli.arguments import find_measured, use_results_folder
     from brdfkit.cli.rank_output import recommend_model
@@ -127,7 +151,7 @@ def _fit_one_file(
 
     with console.progress(f"read {file}"):
         material = find_measured(file, mends)
-    names, ranking = recommend_model(names, material, how, console)
+    names, ranking = recommend_model(names, material, how, console, ranked)
     if pictures:
         size = pictures["size"]
         require_scene(pictures["scene"], pictures["environment"])

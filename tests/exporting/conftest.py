@@ -1,0 +1,13 @@
+"""Quick exports: these tests are not about the quality of fits."""
+
+import pytest
+
+from brdfkit.exporting import hold, loss
+
+
+@pytest.fixture(autouse=True)
+def few_values(monkeypatch):
+    """Fits to few values, and small balls."""
+    monkeypatch.setattr(loss, "SIDE", 16)
+    monkeypatch.setattr(hold, "TABLE_SHAPES", ((16, 8, 8), (6, 12, 6, 6)))
+    monkeypatch.setattr(hold, "LOSS", "cbrt")
