@@ -109,7 +109,9 @@ def compare_with_random_starts(file, model):
     ends = []
     for u in np.random.default_rng(SEED).random((RESTARTS, 1, len(space.names))):
         start = problem.estimate_weights(u)
-        found = levenberg_marquardt(problem.expand_loss, u, start, problem.least, 200, 1e-9).ends
+        found = levenberg_marquardt(
+            problem.expand_loss, u, start, problem.weight_limits, 200, 1e-9
+        ).ends
         ends.append(float(np.sqrt(found.error[0])))
     # `regress` has no term for the albedo, unlike `bk.fit`, so that the losses are comparable
     return regress(model, samples, bk.losses.named["log"], seed=SEED).loss, min(ends)

@@ -1,6 +1,7 @@
 """Makes `docs/models/`: a page for each model, with balls and plots of lobes, and an index.
 
 python docs/tools/make_models.py              # pages and pictures, in two minutes
+python docs/tools/make_models.py ggx ward     # all pages, but only the pictures of these models
 python docs/tools/make_models.py --check      # exits with 1 if a page is not up to date
 """
 
@@ -220,5 +221,6 @@ if __name__ == "__main__":
         sys.exit("\n".join(find_problems()) or 0)
     for name, text in make_pages().items():
         (FOLDER / name).write_text(text, encoding="utf-8")
-    for model in find_shipped_models().values():
-        draw_pictures(model)
+    for name, model in find_shipped_models().items():
+        if name in sys.argv[1:] or not sys.argv[1:]:
+            draw_pictures(model)

@@ -42,6 +42,10 @@ class Mixture(Model):
         for number, label in enumerate(named, 1):
             model = labels.model(label)
             diffuse = [name for name, lobe in model().terms() if lobe.diffuse]
+            if number > 1 and model().fixed_lobes():
+                raise BrdfkitError(
+                    f"{cls.models}: {label} has terms without a weight and should come first."
+                )
             brought = [n for n in model.weights() if number == 1 or n not in diffuse]
             if not brought:
                 raise BrdfkitError(
@@ -95,3 +99,8 @@ class Mixture(Model):
             terms = model.bind(shapes).terms()
             lobes += [lobe for name, lobe in terms if name in brought]
         return tuple(lobes)
+
+    def fixed_lobes(self) -> tuple[Lobe, ...]:
+        prefix, model, _ = self.list_summands()[0]
+        shapes = {n: getattr(self, prefix + n) for n in model.shapes(anisotropic=True)}
+        return model.bind(shapes).fixed_lobes()

@@ -31,7 +31,7 @@ def isotropic(model):
     if model.type_name() == "mixture":
         pytest.skip("several lobes have several minima: test_mixture.py")
     drawn = random_model(model, seed=2)
-    own = {n: v for n, v in drawn.values.items() if not model.parameters[n].follows}
+    own = {n: v for n, v in drawn.values.items() if not model.parameters[n].turns}
     return model(**own)
 
 

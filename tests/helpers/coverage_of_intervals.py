@@ -72,7 +72,7 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
     model = labels.model(name)
     wi, wo = directions(n, seed)
     drawn = random_model(model, seed + 2, channels=3)
-    own = {k: v for k, v in drawn.values.items() if not model.parameters[k].follows}
+    own = {k: v for k, v in drawn.values.items() if not model.parameters[k].turns}
     sample = Samples.from_arrays(wi, wo, np.ones((n, 3)), None, "RGB", "directions")
     given = model.determine_parameters(sample)
     own |= given
@@ -93,7 +93,7 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
         samples = replace(Samples.from_arrays(wi, wo, noisy, None, "RGB", "noisy"), extents=extents)
         problem = Problem(model, samples, bk.losses.named[loss], space)
         ends = levenberg_marquardt(
-            problem.expand_loss, u, weights, problem.least, 50, 1e-10, 1e-4
+            problem.expand_loss, u, weights, problem.weight_limits, 50, 1e-10, 1e-4
         ).ends
         point, passes = (ends.u, ends.weights), None
         if robust:

@@ -29,7 +29,7 @@ def coloured(model):
     values = {}
     for name, value in model().values.items():
         parameter = model.parameters[name]
-        value = value or 0.02
+        value = value or (0.02 if parameter.linear else 0.3)
         if parameter.linear:
             values[name] = [value, 0.8 * value, 0.5 * value]
         else:
@@ -158,7 +158,9 @@ def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     loaded.integrator().render_backward(loaded, found, weights, seed=0, spp=SAMPLES)
     exact = {n: np.sum(np.array(dr.grad(found[k]) * before[n])) for n, k in keys.items()}
     assert all(np.abs(list(exact.values())) > 1e-3), exact
-    np.testing.assert_allclose(*([d[n] for n in names] for d in (exact, expected)), TOLERANCE)
+    given, known = ([d[n] for n in names] for d in (exact, expected))
+    # Parameters that hardly change the picture drown in the noise of the differences
+    np.testing.assert_allclose(given, known, TOLERANCE, atol=2e-3 * np.abs(known).max())
 
 
 # BSDFs around BSDFs
@@ -339,7 +341,7 @@ def test_albedo(model, llvm_variant):
 
 def lambertian_diffuse(mi, model):
     """Whether the only diffuse lobe is 1/π."""
-    diffuse = [lobe for lobe in model().lobes() if lobe.diffuse]
+    diffuse = [lobe for _, lobe in model().drawn_lobes() if lobe.diffuse]
     up = mi.Vector3f(0, 0, 1)
     return len(diffuse) == 1 and isinstance(diffuse[0].eval(up, up), float)
 
@@ -417,7 +419,9 @@ def test_components_sum_to_the_whole(model, llvm_variant):
     """Over the indices of the components, and over Mitsuba's kinds of them."""
     mi = llvm_variant
     bsdf = mi.load_dict(coloured(model).scene_dict())
-    assert bsdf.component_count() == len(group_components(model().lobes()))
+    assert bsdf.component_count() == len(
+        group_components([lobe for _, lobe in model().drawn_lobes()])
+    )
     wi, wo = draw_direction_pairs(5000, seed=5, max_degrees=85)
     whole, _ = evaluated(mi, bsdf, wi, wo)
     parts = [evaluated(mi, bsdf, wi, wo, ctx)[0] for _, ctx in contexts(mi, bsdf)]

@@ -142,9 +142,9 @@ def test_slopes_are_those_of_the_values(model):
         model, data, "log", [bk.solvers.AlbedoAtMost(theta=(20, 70), phi=(0, 40))]
     )
     shapes = len(problem.space.names)
-    count = shapes + 3 * len(problem.least)
+    count = shapes + 3 * problem.weight_limits.shape[1]
     z = np.random.default_rng(0).uniform(0.2, 0.6, count)
-    z[shapes:] -= (np.arange(count - shapes) % 3 == 2) * (problem.least.min() < 0)
+    z[shapes:] -= (np.arange(count - shapes) % 3 == 2) * (problem.weight_limits.min() < 0)
     slopes = constraints.slopes(z)
     h = 1e-6 * np.eye(count)
     expected = [(constraints.values(z + s) - constraints.values(z - s)) / 2e-6 for s in h]

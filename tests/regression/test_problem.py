@@ -39,8 +39,8 @@ def point(problem, seed, points=2):
     """Random coordinates, and weights by which no model is clamped at 0."""
     rng = np.random.default_rng(seed)
     u = rng.uniform(0.2, 0.8, (points, len(problem.space.names)))
-    weights = rng.uniform(0.05, 0.5, (points, problem.channels, len(problem.least)))
-    weights[..., 0] += 3 * (problem.least[0] < 0)
+    weights = rng.uniform(0.05, 0.5, (points, problem.channels, problem.weight_limits.shape[1]))
+    weights[..., 0] += 3 * (problem.weight_limits[0, 0] < 0)
     return u, weights
 
 

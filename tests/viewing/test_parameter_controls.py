@@ -67,11 +67,14 @@ def test_idle_parameters_have_reasons():
 def test_lobes_know_their_parameters():
     affected = find_affected_lobes(find_model("oren_nayar+ggx"))
     assert {name: lobes.tolist() for name, lobes in affected.items()} == {
-        "oren_nayar_1_sigma": [True, False],
-        "ggx_2_alpha_u": [False, True],
-        "ggx_2_alpha_v": [False, True],
-        "ggx_2_f0": [False, True],
+        "oren_nayar_1_sigma": [True, False, False],
+        "ggx_2_alpha_u": [False, True, False],
+        "ggx_2_alpha_v": [False, True, False],
+        "ggx_2_f0": [False, True, False],
     }
+    affected = find_affected_lobes(find_model("disney"))  # the last: terms without a weight
+    assert affected["roughness"].tolist() == [True, True]
+    assert affected["clearcoat"].tolist() == [False, True]
     labels = [label for _, label, _ in list_panels(find_model("ggx+ward"))]
     assert labels == ["Diffuse term", "Highlight 1", "Highlight 2"]
 
@@ -83,6 +86,8 @@ def test_controls_say_what_the_model_declares():
     assert (alpha.low, alpha.high, alpha.default) == (0.001, 1.0, 0.2)
     assert alpha.help == "Rms inclination of the facets."
     assert controls["model.specular_reflectance.R"].high == 1.0
+    controls = {c.name: c for c in make_controls(bk.models()["disney"](base_color=0.9))}
+    assert controls["model.base_color.R"].high == 1.0
     abc = bk.models()["abc"](specular_reflectance=[300.0, 20.0, 1.0])
     assert {c.name: c for c in make_controls(abc)}["model.specular_reflectance.B"].high == 1000.0
 

@@ -13,7 +13,12 @@ from brdfkit.core.array_types import FloatArray, JitFloat, MitsubaModule, Mitsub
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.jit import double_precision
 from brdfkit.model import Model
-from brdfkit.model.evaluation import compute_lobe_values, to_shape_scalars, to_weight_matrix
+from brdfkit.model.evaluation import (
+    compute_fixed_values,
+    compute_lobe_values,
+    to_shape_scalars,
+    to_weight_matrix,
+)
 
 NO_SHAPES = "nothing to check: no shape parameters"
 
@@ -151,8 +156,9 @@ def depends_on_parameter(model: Model, name: str) -> bool:
     }
     dr.enable_grad(values[name])
     wi, wo = (double_precision.to_vector(w) for w in draw_direction_pairs(2, seed=6))
-    lobes = [lobe for _, lobe in model.bind(values).terms()]
-    terms = [lobe.eval(wi, wo) for lobe in lobes]
+    bound = model.bind(values)
+    lobes = [lobe for _, lobe in bound.terms()]
+    terms = [lobe.eval(wi, wo) for lobe in (*lobes, *bound.fixed_lobes())]
     terms += [lobe.quadratic(wi, wo) for lobe in lobes if lobe.quadratic]
     return any(dr.grad_enabled(term) for term in terms)
 
@@ -171,11 +177,13 @@ def compute_exact_derivative(
         lobe = model.weights().index(name)
         derivative = plain[:, [lobe]] + 2 * squared[:, [lobe]] * weights[lobe]
     else:
-        plain_slopes, squared_slopes = _differentiate_lobes(model, name, wi, wo)
+        plain_slopes, squared_slopes, fixed_slopes = _differentiate_lobes(model, name, wi, wo)
         derivative = plain_slopes @ weights + squared_slopes @ weights**2
+        derivative += fixed_slopes.sum(axis=1, keepdims=True)
     if not model.has_signed_weights():
         return derivative
-    return np.where(plain @ weights + squared @ weights**2 > 0, derivative, 0)
+    values = plain @ weights + squared @ weights**2 + compute_fixed_values(model, wi, wo)
+    return np.where(values > 0, derivative, 0)
 
 
 def _differentiate_lobes(
@@ -184,19 +192,22 @@ def _differentiate_lobes(
     """Return all lobes' derivatives with respect to a shape parameter, by Dr.Jit's forward mode.
 
     A lobe's value is a term times its weight, and in a few models another one times the weight's
-    square. Returns the derivatives of the terms, then those of the others, each (n, lobes).
+    square; a few lobes have no weight. Returns the derivatives of the terms, then those of the
+    others, each (n, lobes), then those of the lobes without a weight.
     """
     values = to_shape_scalars(model)
     dr.enable_grad(values[name])
     directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
     Float64 = double_precision.choose_float_type()
-    terms = model.bind(values).terms()
+    bound = model.bind(values)
+    terms = bound.terms()
     plain = [Float64(lobe.eval(*directions)) for _, lobe in terms]
+    fixed = [Float64(lobe.eval(*directions)) for lobe in bound.fixed_lobes()] or [Float64(0)]
     squared = [Float64(lobe.quadratic(*directions) if lobe.quadratic else 0) for _, lobe in terms]
     dr.forward_from(values[name])
     return [
         np.stack([np.broadcast_to(np.array(dr.grad(c)), len(wi)) for c in columns], axis=1)
-        for columns in (plain, squared)
+        for columns in (plain, squared, fixed)
     ]
 
 

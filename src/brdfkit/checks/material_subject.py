@@ -23,7 +23,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import BsdfMaterial
 from brdfkit.model import Model
-from brdfkit.model.evaluation import compute_lobe_values
+from brdfkit.model.evaluation import compute_fixed_values, compute_lobe_values
 
 # Angles of incidence [degrees] of the statistical checks, and their azimuth [rad], off the axes
 INCIDENCES = (0, 30, 60, 75, 85)
@@ -73,6 +73,7 @@ class Subject:
             return self.material.eval(wi, wo)
         plain, squared = compute_lobe_values(self.model, wi, wo)
         values = plain @ self.weights + squared @ self.weights**2
+        values = values + compute_fixed_values(self.model, wi, wo)
         return np.maximum(values, 0) if self.model.has_signed_weights() else values
 
     @property

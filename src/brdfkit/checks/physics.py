@@ -9,7 +9,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import TOLERANCE, directional_albedo
 from brdfkit.core.jit import double_precision
-from brdfkit.model.evaluation import compute_lobe_values
+from brdfkit.model.evaluation import compute_fixed_values, compute_lobe_values
 from brdfkit.regression.problem.not_finite import require_finite_lobes, require_finite_slopes
 
 
@@ -59,6 +59,8 @@ def check_defined(subject: Subject) -> tuple[bool, str]:
     shapes = {name: getattr(model, name) for name in model.shapes(anisotropic=True)}
     directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
     plain, _ = compute_lobe_values(model, wi, wo)
+    if not np.isfinite(compute_fixed_values(model, wi, wo)).all():
+        return False, "the sum of the lobes without a weight is not finite"
     try:
         require_finite_lobes(model, plain.T, *directions)
         require_finite_slopes(model, shapes, shapes, *directions)

@@ -76,7 +76,13 @@ def list_lobe_notes(
         *(
             f"the lobe of {name} is not used: its weight is 0"
             for name, lobe in fitted.terms()
-            if name in at_bounds and not lobe.diffuse
+            if name in at_bounds and not lobe.diffuse and not np.any(getattr(fitted, name))
+        ),
+        *(
+            f"{name} ended on its bound, {fitted.parameters[name].bounds[1]:g}: the material is "
+            "brighter than the model can be, as a metal or a diffuse surface"
+            for name in fitted.weights()
+            if name in at_bounds and np.any(getattr(fitted, name))
         ),
         *_list_impossible_fresnel_values(fitted),
         *_list_parameters_at_bounds(fitted, others, highlight),

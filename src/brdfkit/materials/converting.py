@@ -92,7 +92,7 @@ def evaluate_on_grid(
     """
     model: Any = getattr(thing, "model", thing)
     free = getattr(model, "free_values", {})
-    anisotropic = any(model.parameters[name].follows for name in free)
+    anisotropic = any(v and model.parameters[name].turns for name, v in free.items())
     up = np.array([[0.0, 0.0, 1.0]])
     channels = thing.eval(up, up).shape[1]
     table = tabulate(thing.eval, channels, shapes[anisotropic])

@@ -10,6 +10,7 @@ in single precision. The other files serve all models: `labels.py` finds a model
 from brdfkit.model.model import Model as Model
 from brdfkit.model.parameters import Option as Option
 from brdfkit.model.parameters import Parameter as Parameter
+from brdfkit.model.parameters import anisotropy as anisotropy
 from brdfkit.model.parameters import follows as follows
 from brdfkit.model.parameters import option as option
 from brdfkit.model.parameters import shape as shape

@@ -117,22 +117,23 @@ class Declaration:
     def shapes(cls, anisotropic: bool = False) -> list[str]:
         """Return the names of the nonlinear parameters.
 
-        Parameters that by default equal another one (alpha_v, which follows alpha_u) are included
-        only if `anisotropic`.
+        Parameters that only an anisotropic material needs, such as alpha_v, which by default equals
+        alpha_u, are included only if `anisotropic`.
         """
         return [
             name
             for name, p in cls.parameters.items()
-            if not p.linear and (anisotropic or not p.follows)
+            if not p.linear and (anisotropic or not p.turns)
         ]
 
     @classmethod
     def is_anisotropic(cls) -> bool:
         """Return whether the BRDF can change as the surface turns about its normal.
 
-        By default this is so if one parameter (alpha_v) follows another one (alpha_u).
+        By default this is so if one parameter (alpha_v) follows another one (alpha_u), or an
+        `anisotropy` is declared.
         """
-        return any(p.follows for p in cls.parameters.values())
+        return any(p.turns for p in cls.parameters.values())
 
     @classmethod
     def has_signed_weights(cls) -> bool:

@@ -13,8 +13,9 @@ from brdfkit.core.jit.threads import in_turn
 def evaluate_model(model: Any, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
     """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3).
 
-    The BRDF is the sum of weight · `Lobe.eval` + weight² · `Lobe.quadratic` over the lobes. It is
-    clamped at 0 if weights may be negative, and 0 where a direction is not above the surface.
+    The BRDF is the sum of weight · `Lobe.eval` + weight² · `Lobe.quadratic` over the lobes, and of
+    the lobes without a weight. It is clamped at 0 if weights may be negative, and 0 where a
+    direction is not above the surface.
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
@@ -30,7 +31,7 @@ def mix_lobes(model: Any, weights: AnyArray, wi: AnyArray, wo: AnyArray) -> AnyA
     be above the surface.
     """
     plain, squared = compute_lobe_values(model, wi, wo)
-    values = plain @ weights + squared @ weights**2
+    values = plain @ weights + squared @ weights**2 + compute_fixed_values(model, wi, wo)
     return np.maximum(values, 0) if model.has_signed_weights() else values
 
 
@@ -90,3 +91,13 @@ def compute_lobe_values(model: Any, wi: AnyArray, wo: AnyArray) -> list[AnyArray
         np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)
         for columns in (plain, squared)
     ]
+
+
+@in_turn
+def compute_fixed_values(model: Any, wi: AnyArray, wo: AnyArray) -> Any:
+    """Compute the sum (n, 1) in sr⁻¹ of a model's lobes without a weight; 0.0 if it has none."""
+    if not (lobes := model.bind(to_shape_scalars(model)).fixed_lobes()):
+        return 0.0
+    pair = double_precision.to_vector(wi), double_precision.to_vector(wo)
+    values = np.asarray(sum(lobe.eval(*pair) for lobe in lobes))
+    return np.broadcast_to(values, len(wi))[:, None]

@@ -40,6 +40,7 @@ class Lobe:
     light that is scattered twice.
     `diffuse`: whether Mitsuba counts the lobe as diffuse, not as glossy.
     `factors`: the two functions whose product is `eval`, if `make_factored_lobe` made the lobe.
+    `parts`: the lobes whose sum it is, if `add_lobes` made it; a renderer draws each by itself.
     """
 
     eval: Callable[..., Any]
@@ -48,6 +49,7 @@ class Lobe:
     quadratic: Callable[..., Any] | None = None
     diffuse: bool = False
     factors: tuple[Callable[..., Any], Callable[..., Any]] | None = None
+    parts: tuple[Any, ...] = ()
 
 
 def make_factored_lobe(
@@ -67,6 +69,22 @@ def make_factored_lobe(
         return facets(half_vector(wi, wo), cos_theta_d(wi, wo)) * geometry(wi, wo)
 
     return Lobe(lobe_value, sampling, energy, factors=(facets, geometry))
+
+
+def add_lobes(*parts: Lobe) -> Lobe:
+    """Make one lobe of several that have the same weight, such as a base colour's.
+
+    It is diffuse if the first one is.
+    """
+    quadratic = [part.quadratic for part in parts if part.quadratic]
+    return Lobe(
+        lambda wi, wo: sum(part.eval(wi, wo) for part in parts),
+        parts[0].sampling,
+        lambda wi: sum(part.energy(wi) for part in parts),
+        (lambda wi, wo: sum(q(wi, wo) for q in quadratic)) if quadratic else None,
+        diffuse=parts[0].diffuse,
+        parts=parts,
+    )
 
 
 def group_components(lobes: Sequence[Lobe]) -> list[list[int]]:

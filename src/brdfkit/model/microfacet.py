@@ -24,6 +24,18 @@ def schlick(f0: JitFloat, cos_theta: JitFloat) -> JitFloat:
     return f0 + (1 - f0) * fifth_power(1 - cos_theta)
 
 
+def dielectric_reflectance(cosine: JitFloat, ior: JitFloat) -> JitFloat:
+    """Return Fresnel's reflectance of a dielectric for unpolarised light from the air outside.
+
+    `cosine` is that of the angle of incidence, `ior` the index of refraction, at least 1.
+    """
+    # g is the index times the cosine inside; at grazing angles g ≥ √(ior² - 1), 0 at ior = 1
+    g = dr.sqrt(dr.maximum(ior * ior - 1 + cosine * cosine, 1e-12))
+    parallel = (ior * ior * cosine - g) / (ior * ior * cosine + g)
+    perpendicular = (cosine - g) / (cosine + g)
+    return 0.5 * (parallel * parallel + perpendicular * perpendicular)
+
+
 def fifth_power(x: JitFloat) -> JitFloat:
     """Return x⁵, by multiplications, so that the derivative at 0 is exact."""
     squared = x * x
@@ -109,6 +121,10 @@ class TrowbridgeReitz:
         x, y = self.alpha_u * w.x, self.alpha_v * w.y
         return 0.5 * (dr.sqrt(1 + (x * x + y * y) / (w.z * w.z)) - 1)
 
+    def G1(self, w: JitVector) -> JitFloat:
+        """Return Smith's shadowing or masking of one direction [Heitz 2014, eq. 43]."""
+        return 1 / (1 + self.Lambda(w))
+
     def G2(self, wi: JitVector, wo: JitVector) -> JitFloat:
         """Return Smith's height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
         return 1 / (1 + self.Lambda(wi) + self.Lambda(wo))
@@ -131,8 +147,7 @@ class TrowbridgeReitz:
         return type(wi)(x * inverse, y * inverse, z * inverse)
 
     def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
-        G1 = 1 / (1 + self.Lambda(wi))
-        return G1 * cos_d * self.D(h) / wi.z
+        return self.G1(wi) * cos_d * self.D(h) / wi.z
 
 
 @dataclass(frozen=True)

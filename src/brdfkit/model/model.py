@@ -1,10 +1,11 @@
 """`Model`: the base class of BRDF models, which are sums of weights times lobes.
 
-    f(wi, wo) = Σ weight_k · lobe_k(wi, wo; shape)
+    f(wi, wo) = Σ weight_k · lobe_k(wi, wo; shape) + Σ fixed_lobe_l(wi, wo; shape)
 
 The weights are linear, with one number per colour channel; the shape parameters are nonlinear, and
 all channels share them. A model is a class in a file of its own. Its parameters are class
 attributes, made by `weight` and `shape`, and `lobes` returns one `Lobe` per weight, in their order.
+Few models have `fixed_lobes`, which have no weight.
 
 The same lines run in the renderer, where a parameter has one value per ray, and in a fit, where it
 is a double with derivatives. So a model uses functions of `dr`, and no Python `if` on values.
@@ -139,22 +140,27 @@ class Model(Shown, Declaration):
     def bind(cls, values: dict[str, Any]) -> Any:
         """Return the model with values of any type, such as Dr.Jit arrays, without checks.
 
-        `values` are the values of all parameters by name; a parameter that follows another one may
-        be missing.
+        `values` are the values of all parameters by name; those that only an anisotropic material
+        needs may be missing.
         """
         bound = object.__new__(cls)
         bound.__dict__.update(values)
         for name, parameter in cls.parameters.items():
-            if parameter.follows and name not in values:
-                bound.__dict__[name] = bound.__dict__[parameter.follows]
+            if parameter.turns and name not in values:
+                other = parameter.follows
+                bound.__dict__[name] = bound.__dict__[other] if other else parameter.default
         return bound
 
     def lobes(self) -> tuple[Lobe, ...]:
         """Return the terms of the model: one lobe per weight, in the order of the weights."""
         raise NotImplementedError(f"{type(self).__name__} should give its lobes")
 
+    def fixed_lobes(self) -> tuple[Lobe, ...]:
+        """Return the terms of the model that have no weight, such as a coat's; most have none."""
+        return ()
+
     def terms(self) -> list[tuple[str, Lobe]]:
-        """Return pairs of a weight's name and its lobe, for every term of the model."""
+        """Return pairs of a weight's name and its lobe, for every term with a weight."""
         weights, lobes = self.weights(), self.lobes()
         if len(weights) != len(lobes):
             raise BrdfkitError(
@@ -162,6 +168,16 @@ class Model(Shown, Declaration):
                 f"weights {', '.join(weights)}; it should return one for each."
             )
         return list(zip(weights, lobes, strict=True))
+
+    def drawn_lobes(self) -> list[tuple[int | None, Lobe]]:
+        """Return the lobes that a renderer draws, each with the index of its weight, or None.
+
+        A lobe that was made by `add_lobes` is drawn by its parts.
+        """
+        drawn: list[tuple[int | None, Lobe]] = []
+        for index, lobe in enumerate(self.lobes()):
+            drawn += [(index, part) for part in lobe.parts or (lobe,)]
+        return [*drawn, *((None, lobe) for lobe in self.fixed_lobes())]
 
     @property
     def values(self) -> dict[str, float | tuple[float, ...]]:

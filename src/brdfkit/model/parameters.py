@@ -21,6 +21,7 @@ class Parameter:
     `log`: whether a fit searches it on a logarithmic scale.
     `follows`: name of the parameter whose value it takes if it is not given.
     `width`: exponent p with which the lobe's width is proportional to parameterᵖ, 0 if unrelated.
+    `turns`: whether the material looks the same as it turns about its normal only at the default.
     """
 
     default: float | None
@@ -30,13 +31,14 @@ class Parameter:
     log: bool = False
     follows: str | None = None
     width: float = 0.0
+    turns: bool = False
 
     def __post_init__(self) -> None:
         low, high = self.bounds
-        if self.linear and (low, high) not in (NOT_NEGATIVE, SIGNED):
+        if self.linear and (low, high) != SIGNED and not (low == 0 < high):
             raise BrdfkitError(
                 f"{self.meaning!r}: a weight is at least 0 or of any sign; leave out its bounds, "
-                "or give (-math.inf, math.inf)."
+                "or give (0, LARGEST) or (-math.inf, math.inf)."
             )
         if not self.linear and not -math.inf < low < high < math.inf:
             raise BrdfkitError(
@@ -63,7 +65,8 @@ class Parameter:
 def weight(default: float, meaning: str, bounds: tuple[float, float] = NOT_NEGATIVE) -> Any:
     """Declare a linear parameter: the strength of one lobe in each colour channel.
 
-    `bounds` are ``(0, math.inf)``, or ``(-math.inf, math.inf)`` for a weight that may be negative.
+    `bounds` are ``(0, math.inf)``, ``(0, 1)`` for a colour that a format limits to 1, or
+    ``(-math.inf, math.inf)`` for a weight that may be negative.
     """
     return Parameter(default, bounds, meaning, linear=True)
 
@@ -81,13 +84,22 @@ def shape(
     return Parameter(default, bounds, meaning, log=log, width=width)
 
 
+def anisotropy(bounds: tuple[float, float], meaning: str) -> Any:
+    """Declare the shape parameter that makes a model anisotropic where it is not 0.
+
+    Fits of isotropic materials leave it at 0, its default.
+    """
+    return Parameter(0.0, bounds, meaning, turns=True)
+
+
 def follows(other: str, parameter: Parameter, meaning: str) -> Any:
     """Declare a shape parameter that equals the parameter named `other` unless it is given.
 
     `parameter` is that other parameter, whose bounds and scale it takes. Anisotropic models declare
     their second width (alpha_v) in this way.
     """
-    return Parameter(None, parameter.bounds, meaning, log=parameter.log, follows=other)
+    bounds, log = parameter.bounds, parameter.log
+    return Parameter(None, bounds, meaning, log=log, follows=other, turns=True)
 
 
 @dataclass(frozen=True)

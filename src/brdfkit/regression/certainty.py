@@ -222,4 +222,5 @@ def _list_searched_parameters(
     for c in range(problem.channels):
         names += [f"{name}[{c}]" for name in problem.model.weights()]
     inside = (u[0] > ON_BOUND) & (u[0] < 1 - ON_BOUND)
-    return names, np.concatenate([inside, (weights[0] > problem.least).ravel()])
+    low, high = problem.weight_limits
+    return names, np.concatenate([inside, ((weights[0] > low) & (weights[0] < high)).ravel()])

@@ -126,7 +126,7 @@ class Refit:
         random choices of robust fits and of fits with a corrected albedo.
         """
         u = problem.space.to_coordinates(values)[None]
-        given = problem.expand_loss, u, weights, problem.least
+        given = problem.expand_loss, u, weights, problem.weight_limits
         ends = levenberg_marquardt(*given, LARGEST_STEPS, EXACT).ends
         start, u, weights, error = u, ends.u, ends.weights, ends.error[0]
         if self.target_albedo is not None and self.has_corrected_albedo:

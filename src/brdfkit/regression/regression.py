@@ -205,9 +205,14 @@ def _find_parameters_at_bounds(
 ) -> tuple[str, ...]:
     """Return the names of parameters that ended on a bound.
 
-    First come weights that are 0 in all channels, then shape parameters; `u` (shapes,) and
-    `weights` (channels, lobes): the solution.
+    First come weights that are 0 in all channels, or at their upper bound in one, then shape
+    parameters; `u` (shapes,) and `weights` (channels, lobes): the solution.
     """
     shapes = [n for n, v in zip(space.names, u, strict=True) if min(v, 1 - v) < ON_BOUND]
-    black = [n for n, w in zip(model.weights(), weights.T, strict=True) if (w == 0).all()]
-    return (*(n for n in black if model.parameters[n].bounds[0] == 0), *shapes)
+    bounds = {name: model.parameters[name].bounds for name in model.weights()}
+    at_bounds = [
+        name
+        for (name, (low, high)), own in zip(bounds.items(), weights.T, strict=True)
+        if (low == 0 and (own == 0).all()) or (own >= high).any()
+    ]
+    return (*at_bounds, *shapes)

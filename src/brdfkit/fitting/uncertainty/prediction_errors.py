@@ -149,6 +149,8 @@ def _require_linear_fit(fit: Fit, samples: Samples) -> None:
         reason = f"it was searched for {', '.join(searched)}"
     elif any(lobe.quadratic for lobe in fit.model.lobes()):
         reason = "it holds squares of weights"
+    elif fit.model.fixed_lobes():
+        reason = "it holds lobes without a weight"
     elif not to_loss(fit.loss_name).linear:
         reason = f"the {fit.loss_name} loss is not linear"
     elif settings.get("robust"):

@@ -52,6 +52,8 @@ def to_texel_parameters(
     model = labels.model(label)
     if model.has_signed_weights():
         raise BrdfkitError(f"{label}: its weights may be below 0; choose another model, as ggx.")
+    if model().fixed_lobes():
+        raise BrdfkitError(f"{label}: it has lobes without a weight; choose another model, as ggx.")
     shapes, fixed = model.shapes(anisotropic), to_dictionary("fixed", fixed)
     for name in fixed:
         if name not in shapes:

@@ -1,8 +1,8 @@
 """Adapts any `Model` to a BSDF of Mitsuba.
 
-The BSDF has a texture for every parameter. Each lobe, a term of the model's sum, is a component of
-the BSDF, which is drawn in proportion to its weight and energy. Lobes whose directions are drawn by
-the same object are one component.
+The BSDF has a texture for every parameter. Each lobe, a term of the model's sum or a part of one,
+is a component of the BSDF, which is drawn in proportion to its weight and energy. Lobes whose
+directions are drawn by the same object are one component.
 """
 
 import functools
@@ -28,7 +28,7 @@ DIRECTIONS = make_cosine_directions(64)
 
 def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
     """Define the class of `mi.BSDF` that evaluates and samples a model in the current variant."""
-    groups = group_components(model().lobes())
+    groups = group_components([lobe for _, lobe in model().drawn_lobes()])
     signed = find_signed_components(model, groups)
     kinds = find_component_kinds(mi, model, groups)
     components = find_component_flags(mi, model, kinds, signed)
@@ -51,7 +51,11 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
             if signed:  # lobes with signed weights are sampled by a table
                 shapes, weights = self.average_textures()
                 averaged = model(**shapes)
-                self.tables = {k: tabulate_lobe_sum(averaged, weights, groups[k]) for k in signed}
+                numbers: list[Any] = [number for number, _ in averaged.drawn_lobes()]
+                self.tables = {
+                    k: tabulate_lobe_sum(averaged, weights, [numbers[i] for i in groups[k]])
+                    for k in signed
+                }
 
         def make_response(
             self, ctx: MitsubaObject, si: MitsubaObject, wi: JitVector, active: JitMask
@@ -83,22 +87,23 @@ def has_constant_diffuse_lobes(model: type[Model]) -> bool:
     A sum that is clamped at 0 has no lobes of its own.
     """
     up = double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
-    values = [lobe.eval(up, up) for lobe in model().lobes() if lobe.diffuse]
+    values = [lobe.eval(up, up) for _, lobe in model().drawn_lobes() if lobe.diffuse]
     constant = bool(values) and all(isinstance(value, float) for value in values)
     return constant and not model.has_signed_weights()
 
 
 def find_signed_components(model: type[Model], groups: list[list[int]]) -> list[int]:
     """Return the components, as indices of `groups` of lobes, with weights that may be negative."""
-    linear = [model.parameters[name] for name in model.weights()]
-    return [k for k, group in enumerate(groups) if any(linear[i].bounds[0] < 0 for i in group)]
+    lowest = [model.parameters[name].bounds[0] for name in model.weights()]
+    signed = [k is not None and lowest[k] < 0 for k, _ in model().drawn_lobes()]
+    return [k for k, group in enumerate(groups) if any(signed[i] for i in group)]
 
 
 def find_component_kinds(
     mi: MitsubaModule, model: type[Model], groups: list[list[int]]
 ) -> list[Any]:
     """Return Mitsuba's flag of each component, diffuse or glossy, by the group's first lobe."""
-    flags, lobes = mi.BSDFFlags, model().lobes()
+    flags, lobes = mi.BSDFFlags, [lobe for _, lobe in model().drawn_lobes()]
     return [
         flags.DiffuseReflection if lobes[group[0]].diffuse else flags.GlossyReflection
         for group in groups

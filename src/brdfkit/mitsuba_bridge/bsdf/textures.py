@@ -59,13 +59,15 @@ def define_textured_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
         def bind_lobes(
             self, si: MitsubaObject, active: JitMask
         ) -> tuple[list[Any], tuple[Lobe, ...]]:
-            """Return the weights and the lobes of the model at a point of a surface."""
+            """Return the lobes that are drawn, and their weights, at a point of a surface."""
             values = {}
             for name, texture in self.textures.items():
                 parameter = model.parameters[name]
                 value = (texture.eval if parameter.linear else texture.eval_1)(si, active)
                 values[name] = clamp_to_bounds(value * self.texture_scale(name), parameter)
-            return [values[name] for name in model.weights()], model.bind(values).lobes()
+            weights, one = [values[name] for name in model.weights()], mi.UnpolarizedSpectrum(1)
+            drawn = model.bind(values).drawn_lobes()
+            return [one if k is None else weights[k] for k, _ in drawn], tuple(x for _, x in drawn)
 
         def average_textures(self) -> tuple[dict[str, Any], AnyArray]:
             """Return the textures' means: shape parameters by name, weights (lobes, channels)."""

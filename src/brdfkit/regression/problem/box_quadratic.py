@@ -34,6 +34,7 @@ def minimise_in_box(
     form[:, range(n), range(n)] += 1e-14
     force = gradient * scale
     z = np.linalg.solve(form, -force[:, :, None])[:, :, 0]
+    least, most = low, high
     low, high = low / scale, high / scale
     at_low, at_high = z < low, z > high
     for round_ in range(PARALLEL_ROUNDS + 20 * n):
@@ -52,7 +53,8 @@ def minimise_in_box(
             first = np.arange(n) == changed.argmax(axis=1)[:, None]
             to_low, to_high = np.where(first, to_low, at_low), np.where(first, to_high, at_high)
         at_low, at_high = to_low, to_high
-    return np.minimum(np.maximum(z, low), high) * scale
+    # A variable on a bound is there exactly, in spite of the scaling
+    return np.where(z <= low, least, np.where(z >= high, most, z * scale))
 
 
 def _solve_free_entries(

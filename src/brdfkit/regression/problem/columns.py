@@ -1,8 +1,9 @@
 """Evaluates a model's lobes at pairs of directions, and their derivatives for its shape parameters.
 
-A model is a weighted sum of lobes, M = Σ_l (a_l P_l + a_l² Q_l), with a weight a_l for each lobe l.
-Only few lobes have a term Q_l with the squared weight. All functions P_l and Q_l at some
-pairs of directions are the "values" of the model. Their derivatives with respect to searched shape
+A model is a weighted sum of lobes, M = Σ_l (a_l P_l + a_l² Q_l) + Σ_k R_k, with a weight a_l for
+each lobe l. Only few lobes have a term Q_l with the squared weight, and only few models have lobes
+R_k without a weight. All functions P_l, Q_l and R_k at some pairs of directions are the "values" of
+the model. Their derivatives with respect to searched shape
 parameters, such as a roughness, are its "slopes", without those that are always 0. Values and
 slopes together are the "columns", one number for each pair of directions.
 """
@@ -33,7 +34,8 @@ class Columns:
 
     `model`: the class; `names`: searched shape parameters; `fixed`: values of the other shape
     parameters; `lobes`: index of the lobe of each value; `powers`: power of the lobe's weight that
-    multiplies each value, 1 or 2; `slopes`: pairs (index of a value, index of a shape parameter).
+    multiplies each value, 1 or 2, or 0 for a lobe without a weight, whose index is 0; `slopes`:
+    pairs (index of a value, index of a shape parameter).
     """
 
     model: type[Model]
@@ -99,10 +101,12 @@ class Columns:
         factor: Callable[[Lobe], JitFloat] | None = None,
     ) -> list[JitFloat]:
         """Return the values of the lobes as Dr.Jit arrays (n,), like `evaluate` without slopes."""
-        lobes = [lobe for _, lobe in self.make_model(shapes).terms()]
+        model = self.make_model(shapes)
+        lobes = [lobe for _, lobe in model.terms()]
         zeros = 0 * wi.z  # a constant lobe is one number; adding zeros makes it an array
         plain = [(factor(lobe) if factor else lobe.eval(wi, wo)) + zeros for lobe in lobes]
-        return plain + [lobe.quadratic(wi, wo) + zeros for lobe in lobes if lobe.quadratic]
+        squared = [lobe.quadratic(wi, wo) + zeros for lobe in lobes if lobe.quadratic]
+        return plain + squared + [lobe.eval(wi, wo) + zeros for lobe in model.fixed_lobes()]
 
     def _difference_slopes(
         self, shapes: Sequence[JitFloat], wi: Vector, wo: Vector
@@ -140,12 +144,15 @@ def _trace_columns(
         shapes = {name: double_precision.to_scalar(model().values[name]) for name in names}
         if j >= 0:
             dr.enable_grad(shapes[names[j]])
-        terms = [lobe for _, lobe in model.bind(shapes | constants).terms()]
+        bound = model.bind(shapes | constants)
+        terms, fixed_lobes = [lobe for _, lobe in bound.terms()], bound.fixed_lobes()
         values = [lobe.eval(up, up) for lobe in terms]
         values += [lobe.quadratic(up, up) for lobe in terms if lobe.quadratic]
+        values += [lobe.eval(up, up) for lobe in fixed_lobes]
         if j < 0:
             lobes = [*range(len(terms)), *(k for k, lobe in enumerate(terms) if lobe.quadratic)]
-            powers = [1] * len(terms) + [2] * (len(lobes) - len(terms))
+            powers = [1] * len(terms) + [2] * (len(lobes) - len(terms)) + [0] * len(fixed_lobes)
+            lobes += [0] * len(fixed_lobes)
         elif double_precision.has_derivatives():
             slopes += [(v, j) for v, value in enumerate(values) if dr.grad_enabled(value)]
         else:

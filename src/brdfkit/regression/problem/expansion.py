@@ -77,13 +77,13 @@ class Expansion:
             hessian[:, own, :shapes] = products[:, c, shapes:, :shapes]
         return hessian
 
-    def predict_best_weights(self, u: FloatArray, least: FloatArray) -> FloatArray:
+    def predict_best_weights(self, u: FloatArray, limits: FloatArray) -> FloatArray:
         """Return the best weights (points, channels, lobes) for other coordinates of the shapes.
 
         A search needs them because a lobe's weight and its Fresnel reflectance can make up for each
         other: if one changes, so must the other. The prediction assumes that the lobes are linear
         in their parameters, and the loss is quadratic in the model. `u` (points, shapes): the other
-        coordinates; `least` (lobes,): lower limits of the weights.
+        coordinates; `limits` (2, lobes): lower and upper bounds of the weights.
         """
         columns, count = self.columns, len(self.columns.lobes)
         by = self.space.to_parameters(u) - self.space.to_parameters(self.u)
@@ -93,14 +93,16 @@ class Expansion:
         for k, (value, j) in enumerate(columns.slopes, count):
             lobes[:, value, k] = by[:, j]
         model = np.zeros((*self.weights.shape[:2], len(columns)))
-        model[:, :, :count] = self.weights
+        model[:, :, :count] = self.weights[:, :, columns.lobes] ** columns.powers
         target = (self.gram @ model[..., None])[..., 0] - self.moment
         lobes = lobes[:, None]
         gram = lobes @ self.gram @ lobes.transpose(0, 1, 3, 2)
         moment = -(lobes @ target[..., None])[..., 0]
-        return minimise_in_box(
-            gram.reshape(-1, count, count), moment.reshape(-1, count), least, np.inf
-        ).reshape(self.weights.shape)
+        # Lobes without a weight are in the target's way: their factor stays 1
+        n, fixed = self.weights.shape[2], columns.powers == 0
+        moment = moment[..., :n] + gram[..., :n, fixed].sum(axis=-1)
+        gram = gram[..., :n, :n].reshape(-1, n, n)
+        return minimise_in_box(gram, moment.reshape(-1, n), *limits).reshape(self.weights.shape)
 
     def select_points(self, rows: Any) -> Expansion:
         """Return the expansion about some of the points, selected by indices or a mask."""
@@ -127,7 +129,8 @@ def make_derivative_matrix(columns: Columns, weights: FloatArray, slopes: FloatA
     shapes, values = len(columns.names), len(columns.lobes)
     change = np.zeros((points, channels, shapes + lobes, len(columns)))
     for k, (lobe, power) in enumerate(zip(columns.lobes, columns.powers, strict=True)):
-        change[:, :, shapes + lobe, k] = 1 if power == 1 else 2 * weights[:, :, lobe]
+        if power:
+            change[:, :, shapes + lobe, k] = 1 if power == 1 else 2 * weights[:, :, lobe]
     factors = weights[:, :, columns.lobes] ** columns.powers
     for k, (value, j) in enumerate(columns.slopes, values):
         change[:, :, j, k] = factors[:, :, value] * slopes[:, None, j]

@@ -41,6 +41,8 @@ def fold_problem(problem: Problem) -> FoldedProblem | None:
     single = len(problem.groups) == 1  # folded sums are for all channels at once
     if not (problem.linear and single) or cells is None or not double_precision.has_derivatives():
         return None
+    if not problem.columns.powers.all():  # sums with lobes without a weight are not made
+        return None
     pairs = _depends_on_cos_d(problem)
     if pairs is None:
         return None
@@ -87,7 +89,7 @@ class FoldedProblem:
     clamped = False
 
     def __init__(self, problem: Problem, starts: IntArray) -> None:
-        self.problem, self.space, self.least = problem, problem.space, problem.least
+        self.problem, self.space, self.weight_limits = problem, problem.space, problem.weight_limits
         self.columns, self.channels = problem.columns, problem.channels
         self.wi, self.wo = (
             double_precision.to_vector(np.asarray(w)[starts])
@@ -129,7 +131,7 @@ class FoldedProblem:
 
     def estimate_weights(self, u: FloatArray) -> FloatArray:
         """Return the weights (points, channels, lobes) with the least loss at coordinates `u`."""
-        return solve_weights(self.columns, self._sum_over_nodes(u), self.least)
+        return solve_weights(self.columns, self._sum_over_nodes(u), self.weight_limits)
 
     def expand_loss(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
         """Return the `Expansion` about coordinates `u` and the weights that are best for them.
@@ -137,7 +139,7 @@ class FoldedProblem:
         `weights` and `curvature` have no effect; `Problem.expand_loss` needs them.
         """
         sums = self._sum_over_nodes(u)
-        weights = solve_weights(self.columns, sums, self.least)
+        weights = solve_weights(self.columns, sums, self.weight_limits)
         sums = move_sums_to_weights(self.columns, sums, weights)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 

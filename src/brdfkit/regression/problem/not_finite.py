@@ -112,8 +112,11 @@ def require_finite_slopes(
     bound = {n: double_precision.to_array(np.full(count, v)) for n, v in values.items()}
     for name in names:
         dr.enable_grad(bound[name])
-    lobes = [lobe.eval(wi, wo) for _, lobe in model.bind(bound).terms()]
-    for weight, lobe in zip(model.weights(), lobes, strict=True):
+    made = model.bind(bound)
+    lobes = [(f"the lobe of {weight}", lobe) for weight, lobe in made.terms()]
+    lobes += [("a lobe without a weight", lobe) for lobe in made.fixed_lobes()]
+    for what, evaluated in lobes:
+        lobe = evaluated.eval(wi, wo)
         if not dr.grad_enabled(lobe):
             continue
         dr.clear_grad(bound)
@@ -125,7 +128,7 @@ def require_finite_slopes(
             if not np.isfinite(slope).all():
                 row = int(np.argmin(np.isfinite(slope)))
                 raise BrdfkitError(
-                    f"{model.type_name()}: the derivative by {name} of the lobe of {weight} is "
+                    f"{model.type_name()}: the derivative by {name} of {what} is "
                     f"{slope[row]:g} at {describe_direction_pair(wi, wo, row)}; {REMEDY}."
                 )
 

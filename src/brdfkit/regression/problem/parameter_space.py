@@ -36,16 +36,15 @@ def split_point(z: FloatArray, shapes: int, channels: int) -> tuple[FloatArray, 
 
 
 def make_point_limits(
-    shapes: int, channels: int, least: FloatArray
+    shapes: int, channels: int, weight_limits: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the lower and upper bounds (n,) of the vectors that `join_point` makes.
 
-    `shapes`, `channels`: numbers of shape parameters and channels; `least` (lobes,): lower bounds
-    of the weights, which have no upper ones.
+    `shapes`, `channels`: numbers of shape parameters and channels; `weight_limits` (2, lobes):
+    lower and upper bounds of the weights.
     """
-    count = channels * len(least)
-    low = np.concatenate([np.zeros(shapes), np.tile(least, channels)])
-    return low, np.concatenate([np.ones(shapes), np.full(count, np.inf)])
+    low, high = (np.tile(limits, channels) for limits in weight_limits)
+    return np.concatenate([np.zeros(shapes), low]), np.concatenate([np.ones(shapes), high])
 
 
 def find_channel_entries(c: int, shapes: int, lobes: int) -> IntArray:

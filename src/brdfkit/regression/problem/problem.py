@@ -47,10 +47,10 @@ class Problem:
         numbers = range(self.channels)
         self.groups = [numbers[k : k + GROUP] for k in numbers[::GROUP]]
         bounds = [model.parameters[name].bounds for name in model.weights()]
-        self.least = np.array([low for low, _ in bounds])
-        self.clamped = not loss.linear and bool((self.least < 0).any())
+        self.weight_limits = np.array(bounds, float).T  # lower and upper ones of the lobes
+        self.clamped = not loss.linear and bool((self.weight_limits < 0).any())
         self.extended = extended
-        self.linear = loss.linear and (self.columns.powers == 1).all()
+        self.linear = loss.linear and (self.columns.powers < 2).all()
         self.factors: list[FloatArray] | None = None
 
         importance = loss.importance(samples)
@@ -84,7 +84,7 @@ class Problem:
             squares.append(np.asarray(block.importance * total))
         contributions = np.concatenate(squares)
         if not np.isfinite(contributions).all():
-            black = np.zeros((1, self.channels, len(self.least)))
+            black = np.zeros((1, self.channels, self.weight_limits.shape[1]))
             self._raise_if_not_finite(np.full((1, len(self.space.names)), 0.5), black)
         return contributions
 
@@ -98,6 +98,7 @@ class Problem:
         sums = Sums.make_zeros(len(u), self.channels, len(self.columns))
         for block in self.blocks(len(u)):
             columns = self._evaluate_columns(block, u)
+            fixed = sum(columns[k] for k in np.flatnonzero(self.columns.powers == 0))
             moments, weights = [], []
             for group in self.groups:
                 for c in group:
@@ -106,13 +107,13 @@ class Problem:
                     _, slope = self.evaluate_difference(block, value, c)
                     slope = 0 * slope + 1 if evenly else slope
                     weights.append(block.importance * slope * slope)
-                    moments.append(-weights[-1] * value)
+                    moments.append(weights[-1] * (fixed - value))
                 self._evaluate_channel_group(columns, moments, weights)
             squares = [0 * block.importance]
             sums.add_samples(*self._evaluate_block(block, u, columns, squares, moments, weights))
         if not sums.is_finite():
             self._raise_if_not_finite(u)
-        return solve_weights(self.columns, sums, self.least)
+        return solve_weights(self.columns, sums, self.weight_limits)
 
     def expand_loss(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
         """Return the quadratic approximation of the squared loss E² about points.
@@ -125,7 +126,7 @@ class Problem:
             weights = np.zeros_like(weights)
         sums = self.compute_sums(u, weights, curvature)
         if solve:
-            weights = solve_weights(self.columns, sums, self.least)
+            weights = solve_weights(self.columns, sums, self.weight_limits)
             sums = move_sums_to_weights(self.columns, sums, weights)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 

@@ -69,17 +69,17 @@ class Sums:
                     self.gram[:, c] += (T * weight[:, None, part]) @ T.transpose(0, 2, 1)
 
 
-def solve_weights(columns: Columns, sums: Sums, low: FloatArray) -> FloatArray:
+def solve_weights(columns: Columns, sums: Sums, limits: FloatArray) -> FloatArray:
     """Return the lobes' weights (points, channels, lobes) that minimise the squared loss.
 
     `columns`: columns of the model; columns that are multiplied by a squared weight are ignored;
-    `sums`: sums where all weights are 0; `low` (lobes,): lower bounds of the weights.
+    `sums`: sums where all weights are 0; `limits` (2, lobes): lower and upper bounds of weights.
     """
     points, channels = sums.moment.shape[:2]
     lobes = int(columns.lobes.max()) + 1
     gram = sums.gram[:, :, :lobes, :lobes].reshape(-1, lobes, lobes)
     moment = sums.moment[:, :, :lobes].reshape(-1, lobes)
-    return minimise_in_box(gram, moment, low, np.inf).reshape(points, channels, lobes)
+    return minimise_in_box(gram, moment, *limits).reshape(points, channels, lobes)
 
 
 def move_sums_to_weights(columns: Columns, sums: Sums, weights: FloatArray) -> Sums:
@@ -88,6 +88,7 @@ def move_sums_to_weights(columns: Columns, sums: Sums, weights: FloatArray) -> S
     `sums`: sums where all weights are 0, under a loss that is linear in the model.
     """
     factors = weights[:, :, columns.lobes] ** columns.powers
+    factors[:, :, columns.powers == 0] = 0  # lobes without a weight are in `sums` already
     values = len(columns.lobes)
     by_values = sums.gram[:, :, :, :values] @ factors[..., None]
     moment = sums.moment + by_values[..., 0]

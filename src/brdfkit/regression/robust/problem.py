@@ -80,7 +80,7 @@ class RobustProblem:
         black = problem.compute_residuals(u, 0 * weights)
         self.least = [compute_smallest_scale(target / root) for target in black]
         self.spread = np.sqrt(sum(len(t) * np.var(t) for t in black)) or 1.0
-        self.low, self.high = make_point_limits(u.shape[1], problem.channels, problem.least)
+        self.low, self.high = make_point_limits(u.shape[1], problem.channels, problem.weight_limits)
 
     def _find_leverages(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return the leverages (n,) of the samples in each channel, for the lobes' weights.
@@ -117,7 +117,7 @@ class RobustProblem:
         shapes = point.u.shape[1]
         moved = point.weights + step[shapes:].reshape(point.weights.shape)
         u = np.clip(point.u + step[:shapes], 0, 1)
-        return self.make_point(u, np.maximum(moved, self.problem.least))
+        return self.make_point(u, np.clip(moved, *self.problem.weight_limits))
 
     def estimate_scales(self, point: Point) -> list[float]:
         """Return the scale of the residuals' noise in each channel, at a point."""
@@ -131,8 +131,8 @@ class RobustProblem:
     def is_linear(self) -> bool:
         """Whether the residuals are linear in all parameters, of which none has a bound."""
         problem = self.problem
-        unbounded = not problem.space.names and bool(np.isneginf(problem.least).all())
-        return problem.linear and unbounded
+        unbounded = not problem.space.names and bool(np.isinf(problem.weight_limits).all())
+        return bool(problem.linear and unbounded)
 
     def weigh_residuals(self, channel: int, residuals: FloatArray) -> FloatArray:
         """Return the samples' weights ω (n,) that follow from the residuals (n,) of a channel."""

@@ -59,7 +59,7 @@ def levenberg_marquardt(
     expand: Callable[[FloatArray, FloatArray], Expansion],
     u: FloatArray,
     weights: FloatArray,
-    least: FloatArray,
+    weight_limits: FloatArray,
     iterations: int,
     tolerance: float = 1e-6,
     damping: float = 1e-3,
@@ -67,9 +67,10 @@ def levenberg_marquardt(
     """Search for the least squared loss E² from several start points, and return the `Search`.
 
     `expand(u, weights)`: a function that returns the `Expansion` of E² about points; `u` (points,
-    shapes), `weights` (points, channels, lobes): the start points; `least` (lobes,): lower bounds
-    of the weights; `iterations`: largest number of steps; `tolerance`: a search converges if its
-    next step would lower E² by less than this share; `damping`: damping of the first step.
+    shapes), `weights` (points, channels, lobes): the start points; `weight_limits` (2, lobes):
+    lower and upper bounds of the weights; `iterations`: largest number of steps; `tolerance`: a
+    search converges if its next step would lower E² by less than this share; `damping`: damping of
+    the first step.
 
     A search also converges if its E² is only a rounding error compared with the worst start's. It
     ends without converging if it would not come below a search that has converged. On Ctrl-C
@@ -78,7 +79,7 @@ def levenberg_marquardt(
     now = expand(u.copy(), weights.copy())  # copies, because the search writes into them
     points, shapes = now.u.shape
     channels = weights.shape[1]
-    low, high = make_point_limits(shapes, channels, least)
+    low, high = make_point_limits(shapes, channels, weight_limits)
     correction = np.zeros_like(now.hessian)
     dampings, growth, evaluations = np.full(points, damping), np.full(points, 4.0), points
     exact = ROUNDING * now.error.max()
@@ -115,11 +116,11 @@ def levenberg_marquardt(
             if not len(rows):
                 break
             u = np.clip(here.u + step[:, :shapes], 0, 1)
-            if (here.columns.powers == 1).all():
-                weights = here.predict_best_weights(u, least)
+            if (here.columns.powers < 2).all():
+                weights = here.predict_best_weights(u, weight_limits)
             else:
                 moved = here.weights.reshape(len(rows), -1) + step[:, shapes:]
-                weights = np.maximum(moved.reshape(here.weights.shape), least)
+                weights = np.clip(moved.reshape(here.weights.shape), *weight_limits)
             trial = expand(u, weights)
             evaluations += len(rows)
             share = (here.error - trial.error) / gain

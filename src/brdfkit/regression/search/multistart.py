@@ -104,7 +104,7 @@ def search_from_starts(
     # All starts take a few steps, the best of them a few more, and so on
     for number, (count, steps) in enumerate(rounds):
         report(number, total)
-        search = levenberg_marquardt(first.expand_loss, u, weights, first.least, steps)
+        search = levenberg_marquardt(first.expand_loss, u, weights, first.weight_limits, steps)
         evaluations += search.evaluations
         ends = search.ends.select_points(search.find_best_ends(count))
         u, weights = ends.u, ends.weights
@@ -137,7 +137,9 @@ def _add_unclamped_starts(problem: Problem, u: FloatArray, weights: FloatArray) 
     a search with a loss that continues below 0, and from other weights.
     """
     extended = Problem(problem.model, problem.samples, problem.loss, problem.space, extended=True)
-    ends = levenberg_marquardt(extended.expand_loss, u, weights, problem.least, LARGEST_STEPS).ends
+    ends = levenberg_marquardt(
+        extended.expand_loss, u, weights, problem.weight_limits, LARGEST_STEPS
+    ).ends
     evenly = problem.estimate_weights(u, evenly=True)
     starts = [(u, weights), (ends.u, ends.weights), (u, evenly), (u, (evenly + weights) / 2)]
     starts.append(((u + ends.u) / 2, (weights + ends.weights) / 2))
@@ -162,13 +164,13 @@ def _search_problem(
         # The Hessian of a part is nearly the Hessian of all samples, and takes less time
         expand, damping = _borrow_hessian_from_part(problem, part), 1e-7
         search = levenberg_marquardt(
-            expand, u, weights, problem.least, FEW_STEPS, tolerance, damping
+            expand, u, weights, problem.weight_limits, FEW_STEPS, tolerance, damping
         )
         if search.converged.all():
             return search, search.evaluations
         u, weights, evaluations = search.ends.u, search.ends.weights, search.evaluations
     search = levenberg_marquardt(
-        problem.expand_loss, u, weights, problem.least, iterations, tolerance, damping
+        problem.expand_loss, u, weights, problem.weight_limits, iterations, tolerance, damping
     )
     return search, evaluations + search.evaluations
 

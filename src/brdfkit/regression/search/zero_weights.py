@@ -26,7 +26,7 @@ def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) ->
     try for the shape parameters of a lobe, in addition to the corners of their bounds.
     """
     points = [(end.u[:0], end.weights[:0])]
-    for lobe in np.flatnonzero((end.weights[0] == 0).all(axis=0) & (problem.least == 0)):
+    for lobe in np.flatnonzero((end.weights[0] == 0).all(axis=0) & (problem.weight_limits[0] == 0)):
         shapes = _find_unshared_shapes(problem.columns, int(lobe))
         if not shapes:
             continue
@@ -38,6 +38,7 @@ def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) ->
         here = problem.expand_at_weights(u, weights)
         slope, bend = here.moment[:, :, lobe], here.gram[:, :, lobe, lobe]
         best = np.maximum(-slope, 0) / np.maximum(bend, 1e-300)
+        best = np.minimum(best, problem.weight_limits[1, lobe])
         gain = -(slope * best).sum(axis=1)
         weights[:, :, lobe] = best
         order = np.argsort(-gain, kind="stable")[:LARGEST_COUNT]
@@ -50,5 +51,6 @@ def _find_unshared_shapes(columns: Columns, lobe: int) -> list[int]:
     """Return the indices of those searched shape parameters that only this lobe depends on."""
     users: dict[int, set[int]] = {}
     for value, shape in columns.slopes:
-        users.setdefault(shape, set()).add(columns.lobes[value])
+        lobe_or_fixed = columns.lobes[value] if columns.powers[value] else -1
+        users.setdefault(shape, set()).add(lobe_or_fixed)
     return [shape for shape, lobes in users.items() if lobes == {lobe}]

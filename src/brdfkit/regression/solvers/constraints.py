@@ -85,7 +85,7 @@ class UserConstraint:
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the derivatives (m, n) for the parameters, from central differences."""
         z = join_point(u, weights)[0]
-        low, high = make_point_limits(u.shape[1], problem.channels, problem.least)
+        low, high = make_point_limits(u.shape[1], problem.channels, problem.weight_limits)
         slopes = []
         for k in range(len(z)):
             below, above = z.copy(), z.copy()

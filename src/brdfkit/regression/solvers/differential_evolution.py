@@ -82,7 +82,7 @@ def _find_least_error(objective: Objective, u: FloatArray) -> FloatArray:
     `u` (points, shapes): coordinates of the shape parameters.
     """
     shapes, problem = objective.shapes, objective.problem
-    low = np.tile(problem.least, problem.channels)
+    low, high = (np.tile(limits, problem.channels) for limits in problem.weight_limits)
     z, least = objective.join(u, problem.estimate_weights(u)), np.full(len(u), np.inf)
     for _ in range(WEIGHT_STEPS):
         here = objective.expand(z)
@@ -91,5 +91,5 @@ def _find_least_error(objective: Objective, u: FloatArray) -> FloatArray:
         if not gained.any():
             break
         H, g = here.hessian[:, shapes:, shapes:], here.gradient[:, shapes:]
-        z[:, shapes:] += minimise_in_box(H, g, low - z[:, shapes:], np.inf)
+        z[:, shapes:] += minimise_in_box(H, g, low - z[:, shapes:], high - z[:, shapes:])
     return least

@@ -50,7 +50,7 @@ class Objective:
     Attributes
     ----------
     low, high : ndarray, shape (n,)
-        The bounds of points; `high` is infinite for weights.
+        The bounds of points; `high` is infinite for most weights.
     starts : ndarray, shape (count, n)
         Points that are spread over the bounds, the model's defaults first, with suitable weights.
     parts : tuple of Objective
@@ -80,7 +80,9 @@ class Objective:
         self.constraints, self.parts = constraints, parts
         self.shapes, self.evaluations = coordinates.shape[1], 0
         self.best: tuple[float, FloatArray] | None = None  # (E², point) of the best point so far
-        self.low, self.high = make_point_limits(self.shapes, problem.channels, problem.least)
+        self.low, self.high = make_point_limits(
+            self.shapes, problem.channels, problem.weight_limits
+        )
 
     @classmethod
     def from_problems(cls, problems: Sequence[Any], *given: Any) -> Objective:

@@ -20,7 +20,7 @@ def find_idle_parameters(model: Model) -> dict[str, str]:
     """
     kind = type(model)
     weights = kind.weights()
-    black = np.array([not np.any(getattr(model, name)) for name in weights])
+    black = np.array([not np.any(getattr(model, name)) for name in weights] + [False])
     idle = {}
     for name, affected in find_affected_lobes(kind).items():
         follows = kind.parameters[name].follows

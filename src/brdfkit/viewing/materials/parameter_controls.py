@@ -52,7 +52,7 @@ def make_controls(model: Model) -> list[Control]:
 
 def _make_weight_controls(control: Any, parameter: Parameter, value: Any) -> list[Control]:
     """Return the controls of a weight with a value."""
-    high = choose_end(parameter, float(np.max(np.abs(value))))
+    high = min(choose_end(parameter, float(np.max(np.abs(value)))), parameter.bounds[1])
     low = -high if parameter.bounds[0] < 0 else 0.0
     controls = [control(f".{c}", c, low=low, high=high) for c in CHANNELS]
     controls.append(control(".linked", "channels linked", kind="flag"))

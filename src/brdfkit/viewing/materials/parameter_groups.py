@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, BoolArray
 from brdfkit.lighting.filtering.scene_bsdfs import PAIRS
 from brdfkit.model import Model, Parameter
-from brdfkit.model.evaluation import compute_lobe_values
+from brdfkit.model.evaluation import compute_fixed_values, compute_lobe_values
 
 SHARES = 0.35, 0.8  # places between the bounds of a parameter at which lobes are compared
 
@@ -57,7 +57,11 @@ def _label_groups(model: type[Model], members: list[list[int]]) -> list[str]:
         names = ["Terms" for _ in members]
     else:
         names = [
-            "Diffuse term" if all(lobes[k].diffuse for k in group) else "Highlight"
+            "Base"
+            if any(lobes[k].parts for k in group)
+            else "Diffuse term"
+            if all(lobes[k].diffuse for k in group)
+            else "Highlight"
             for group in members
         ]
     counts = {name: names.count(name) for name in names}
@@ -69,7 +73,10 @@ def _label_groups(model: type[Model], members: list[list[int]]) -> list[str]:
 
 
 def find_affected_lobes(model: type[Model]) -> dict[str, BoolArray]:
-    """Return for each shape parameter the mask (lobes,) of the lobes that depend on it."""
+    """Return for each shape parameter the mask (lobes + 1,) of the lobes that depend on it.
+
+    The last entry is for the lobes without a weight.
+    """
     hashable: Any = model  # a type checker takes a class for its objects here
     return _compare_lobes(hashable)
 
@@ -89,8 +96,20 @@ def _compare_lobes(model: Any) -> dict[str, BoolArray]:
 
 
 def _evaluate_lobes(model: type[Model], shapes: dict[str, float]) -> AnyArray:
-    """Return the values (n, lobes) of all lobes at pairs of directions."""
-    return np.concatenate(compute_lobe_values(model(**shapes), *PAIRS))
+    """Return the values (n, lobes + 1) of all lobes, at last of those without a weight."""
+    return evaluate_all_lobes(model(**shapes), *PAIRS)
+
+
+def evaluate_all_lobes(model: Model, wi: AnyArray, wo: AnyArray) -> AnyArray:
+    """Return the values (2n, lobes + 1) of all lobes at n pairs of directions.
+
+    The first n rows belong to the weights, the others to their squares. The last column has the sum
+    of the lobes without a weight.
+    """
+    values = np.concatenate(compute_lobe_values(model, wi, wo))
+    fixed = np.zeros((len(values), 1))
+    fixed[: len(wi)] = compute_fixed_values(model, wi, wo)
+    return np.hstack([values, fixed])
 
 
 def place_between_bounds(parameter: Parameter, share: float) -> float:

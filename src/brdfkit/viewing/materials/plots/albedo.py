@@ -45,7 +45,7 @@ def is_anisotropic(material: Any) -> bool:
     """
     if isinstance(material, Model):
         free = material.free_values
-        return any(parameter.follows and n in free for n, parameter in material.parameters.items())
+        return any(parameter.turns and free.get(n) for n, parameter in material.parameters.items())
     return bool(getattr(material, "anisotropic", False))
 
 

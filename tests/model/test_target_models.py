@@ -1,0 +1,56 @@
+"""Models of other renderers: their formulas, and fits whose weights have bounds on both sides."""
+
+import numpy as np
+import pytest
+from random_models import random_model
+from scipy.optimize import lsq_linear
+
+import brdfkit as bk
+from brdfkit.checks.material_subject import draw_direction_pairs
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.materials.resolve import to_material
+from brdfkit.model import labels
+from brdfkit.model.evaluation import compute_fixed_values, compute_lobe_values
+
+DISNEY = bk.models()["disney"]
+MITSUBAS_NAMES = {"anisotropy": "anisotropic", "ior": "eta"}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("seed", range(6))
+def test_disney_is_mitsubas_principled(llvm_variant, seed):
+    """To 1e-3, which single precision leaves of narrow coats."""
+    drawn = random_model(DISNEY, seed)
+    own = {"anisotropy": abs(drawn.anisotropy) * (seed % 2), "roughness": 0.1 + 0.15 * seed}
+    ours = drawn.changed(clearcoat_gloss=0.8 * drawn.clearcoat_gloss, **own)
+    entries = {MITSUBAS_NAMES.get(name, name): value for name, value in ours.values.items()}
+    entries["base_color"] = {"type": "rgb", "value": list(ours.base_color)}
+    theirs = to_material({"type": "principled", **entries})
+    wi, wo = draw_direction_pairs(2000, seed, 85)
+    np.testing.assert_allclose(ours.eval(wi, wo), theirs.eval(wi, wo), rtol=1e-3)
+
+
+@pytest.mark.quick
+def test_bounded_weights_are_those_of_bounded_least_squares():
+    """Of a material that is brighter than the base colour may be, and redder than the highlight."""
+    model = labels.model("disney+ward")
+    wi, wo = draw_direction_pairs(1000, 1, 80)
+    shapes = {n: v for n, v in model().values.items() if n in model.shapes()}
+    bright = model(disney_1_base_color=[1.0, 0.9, 0.2], ward_2_specular_reflectance=[0.5, 0.0, 0.1])
+    measured = bright.eval(wi, wo) * [1.4, 0.7, 1.0]
+    data = bk.Measured.from_samples(wi, wo, measured)
+    fit = bk.fit(data, "disney+ward", loss="plain", fixed=shapes)
+    samples = select_samples(data, 80.0)
+    lobes, _ = compute_lobe_values(fit.model, samples.wi, samples.wo)
+    target = samples.values - compute_fixed_values(fit.model, samples.wi, samples.wo)
+    root = np.sqrt(bk.losses.named.by_sample["plain"].importance(samples))[:, None]
+    limits = [0, 0], [1, np.inf]
+    for c, values in enumerate(target.T):
+        best = lsq_linear(root * lobes, root[:, 0] * values, limits, tol=1e-14).x
+        own = [fit.values[name][c] for name in model.weights()]
+        np.testing.assert_allclose(own, best, atol=1e-8)
+    assert fit.values["disney_1_base_color"][0] == 1
+    assert fit.values["ward_2_specular_reflectance"][1] == 0
+    assert "disney_1_base_color" in fit.at_bounds
+    assert np.isnan(fit.standard_errors["disney_1_base_color"][0])
+    assert any("brighter than the model can be" in note for note in fit.notes)
