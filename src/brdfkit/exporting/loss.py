@@ -44,11 +44,20 @@ def measure_loss(material: Material, drawn: Material) -> Loss:
     if drawn is material:
         return Loss(0.0, 0.0)
     wi, wo = draw_direction_pairs(PAIRS)
-    logs = [
-        np.log(np.maximum(thing.eval(wi, wo), 0) * (wi[:, 2:] * wo[:, 2:]) + FLOOR)
-        for thing in (material, drawn)
-    ]
-    return Loss(float(np.sqrt(np.mean((logs[1] - logs[0]) ** 2))), compare_balls(material, drawn))
+    values = [thing.eval(wi, wo) for thing in (material, drawn)]
+    return Loss(compute_log_error(*values, wi, wo), compare_balls(material, drawn))
+
+
+def compute_log_error(
+    first: FloatArray, other: FloatArray, wi: FloatArray, wo: FloatArray
+) -> float:
+    """Return the RMS difference of ln(f cosθ_i cosθ_o + 0.001) of two BRDFs' values (n, channels).
+
+    `wi`, `wo` (n, 3): their directions.
+    """
+    cosines = wi[:, 2:] * wo[:, 2:]
+    logs = [np.log(np.maximum(values, 0) * cosines + FLOOR) for values in (first, other)]
+    return float(np.sqrt(np.mean((logs[1] - logs[0]) ** 2)))
 
 
 def draw_direction_pairs(count: int, seed: int = 0) -> tuple[FloatArray, FloatArray]:

@@ -1,0 +1,47 @@
+"""Independent programs that evaluate exported files, by target: BRDF values at directions.
+
+Each function takes the files that `export` wrote and directions to light and viewer (n, 3), and
+returns values (n, 3) in sr⁻¹; it skips where its program is not at hand.
+"""
+
+import runpy
+
+import blender
+import numpy as np
+
+
+def evaluate_in_blender(paths, wi, wo):
+    """Cycles draws a plane under a sun."""
+    return blender.measure(paths[0], wi, wo)
+
+
+def evaluate_in_python(paths, wi, wo):
+    """Python runs the file."""
+    return runpy.run_path(str(paths[0]))["brdf"](wi, wo)
+
+
+SCENE = """<scene version="3.0.0"><include filename="{}"/>
+<shape type="rectangle"><ref id="material"/></shape></scene>"""
+
+
+def evaluate_in_mitsuba(paths, wi, wo):
+    """Mitsuba loads the file into a scene, and its own plugins evaluate the BSDF."""
+    import drjit as dr
+    import mitsuba as mi
+
+    mi.set_variant("llvm_ad_rgb")
+    user = paths[0].with_name("scene.xml")
+    user.write_text(SCENE.format(paths[0].name))
+    si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
+    si.wi = mi.Vector3f(np.asarray(wi).T)
+    bsdf = mi.load_file(str(user)).shapes()[0].bsdf()
+    values = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(np.asarray(wo).T))
+    return np.array(values).T / wo[:, 2:]
+
+
+ORACLES = {
+    "blender": evaluate_in_blender,
+    "mitsuba": evaluate_in_mitsuba,
+    "osl": evaluate_in_blender,
+    "python": evaluate_in_python,
+}
