@@ -44,8 +44,8 @@ def measure_loss(material: Material, drawn: Material) -> Loss:
     if drawn is material:
         return Loss(0.0, 0.0)
     wi, wo = draw_direction_pairs(PAIRS)
-    values = [thing.eval(wi, wo) for thing in (material, drawn)]
-    return Loss(compute_log_error(*values, wi, wo), compare_balls(material, drawn))
+    first, other = (thing.eval(wi, wo) for thing in (material, drawn))
+    return Loss(compute_log_error(first, other, wi, wo), compare_balls(material, drawn))
 
 
 def compute_log_error(
