@@ -5,6 +5,7 @@ import json
 import re
 import runpy
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -35,7 +36,7 @@ def cli(tmp_path, monkeypatch):
 
 
 # Tables take seconds, whatever the material
-TABLES = {"csv", "mitsuba", "radiance"}
+TABLES = {"csv", "mitsuba"}
 
 
 @pytest.mark.parametrize(
@@ -158,6 +159,19 @@ def test_a_name_in_a_file_becomes_no_code(target, tmp_path):
     bk.export(replace(fit, data=harm), target, file)
     tree = ast.parse(file.read_text())
     assert not [node for node in ast.walk(tree) if isinstance(node, ast.Raise)]
+
+
+@pytest.mark.parametrize("target", ["materialx", "mitsuba", "usd"])
+def test_a_name_in_a_file_ends_no_comment(target, tmp_path):
+    fit = bk.fit("red_plastic", "lambert")
+    file = tmp_path / f"a{TARGETS[target].suffix}"
+    bk.export(replace(fit, data="---> --><harm/> \uffff\n<harm/>"), target, file)
+    text = file.read_text(encoding="utf-8")
+    assert "harm" in text
+    if target == "usd":
+        assert all(line.startswith("# ") for line in text.splitlines() if "harm" in line)
+    else:
+        assert "harm" not in {node.tag for node in ElementTree.fromstring(text).iter()}
 
 
 def test_a_bsdf_of_mitsuba_is_refused():

@@ -41,7 +41,11 @@ def _make_environment() -> Any:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= {"number": write_number, "numbers": write_numbers}
+    environment.filters |= {
+        "number": write_number,
+        "numbers": write_numbers,
+        "xml_comment": to_xml_comment,
+    }
     return environment
 
 
@@ -61,6 +65,15 @@ def write_numbers(values: Any) -> str:
     '1.0, 0.5'
     """
     return ", ".join(map(write_number, values))
+
+
+def to_xml_comment(line: str) -> str:
+    """Return a line for a comment in XML, in which two hyphens in a row are an error.
+
+    >>> to_xml_comment("a ---> b")
+    'a - - -> b'
+    """
+    return re.sub("-(?=-)", "- ", re.sub("[\ufffe\uffff]", "?", line))
 
 
 def to_identifier(name: str) -> str:
