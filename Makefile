@@ -36,6 +36,7 @@ quick: $(VENV)/.ready
 	$(PYTEST) -m quick
 
 oracles: $(VENV)/.ready
+	-$(RUN)/python -m pip install --quiet --group oracles  # without it, tests are skipped
 	$(PYTEST) -m oracles
 
 lint: $(VENV)/.ready
