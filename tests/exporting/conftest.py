@@ -3,11 +3,14 @@
 import pytest
 
 from brdfkit.exporting import hold, loss
+from brdfkit.exporting.targets import radiance
 
 
 @pytest.fixture(autouse=True)
 def few_values(monkeypatch):
-    """Fits to few values, and small balls."""
+    """Fits to few values, small balls, and tables of few cells."""
     monkeypatch.setattr(loss, "SIDE", 16)
     monkeypatch.setattr(hold, "TABLE_SHAPES", ((16, 8, 8), (6, 12, 6, 6)))
     monkeypatch.setattr(hold, "LOSS", "cbrt")
+    monkeypatch.setattr(radiance, "DEPTHS", (4,))
+    monkeypatch.setattr(radiance, "ANISOTROPIC_DEPTH", 3)

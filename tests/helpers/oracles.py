@@ -8,6 +8,7 @@ import runpy
 
 import blender
 import numpy as np
+import radiance
 
 
 def evaluate_in_blender(paths, wi, wo):
@@ -39,9 +40,15 @@ def evaluate_in_mitsuba(paths, wi, wo):
     return np.array(values).T / wo[:, 2:]
 
 
+def evaluate_in_radiance(paths, wi, wo):
+    """Radiance's rcontrib traces rays to a plane under suns."""
+    return radiance.measure(paths[0], wi, wo)
+
+
 ORACLES = {
     "blender": evaluate_in_blender,
     "mitsuba": evaluate_in_mitsuba,
     "osl": evaluate_in_blender,
     "python": evaluate_in_python,
+    "radiance": evaluate_in_radiance,
 }

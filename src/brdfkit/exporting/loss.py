@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.ball.ball import draw_ball
 from brdfkit.images.errors.colour_difference import ciede2000
-from brdfkit.materials.resolve import Material
 
 # The BRDFs are compared at this number of random pairs of directions, to this angle to the normal
 PAIRS, LARGEST_ANGLE = 4000, np.radians(80)
 FLOOR = 1e-3  # is added to f cosθ_i cosθ_o, as in the loss "log"
 SIDE = 64  # pixels of the ball's picture
+
+
+class Drawable(Protocol):
+    """The interface of what a target draws: of every material, and of tables of a target's own."""
+
+    @property
+    def name(self) -> str:
+        """The name in the comments of files."""
+
+    def eval(self, wi: FloatArray, wo: FloatArray) -> NDArray[np.float64]:
+        """Return the BRDF [sr⁻¹] (n, channels) for directions to light and viewer, (n, 3) each."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +51,18 @@ class Loss:
         return f"log error {self.log_error:.2g}, mean ΔE {self.delta_e:.2g}"
 
 
-def measure_loss(material: Material, drawn: Material) -> Loss:
+def measure_loss(material: Drawable, drawn: Drawable) -> Loss:
     """Compare what a target draws with the `material`, both in linear sRGB."""
     if drawn is material:
         return Loss(0.0, 0.0)
+    return Loss(measure_log_error(material, drawn), compare_balls(material, drawn))
+
+
+def measure_log_error(material: Drawable, drawn: Drawable) -> float:
+    """Return the RMS difference of ln(f cosθ_i cosθ_o + 0.001) over random pairs of directions."""
     wi, wo = draw_direction_pairs(PAIRS)
     first, other = (thing.eval(wi, wo) for thing in (material, drawn))
-    return Loss(compute_log_error(first, other, wi, wo), compare_balls(material, drawn))
+    return compute_log_error(first, other, wi, wo)
 
 
 def compute_log_error(
@@ -68,7 +85,7 @@ def draw_direction_pairs(count: int, seed: int = 0) -> tuple[FloatArray, FloatAr
     return wi, wo
 
 
-def compare_balls(material: Material, drawn: Material) -> float:
+def compare_balls(material: Drawable, drawn: Drawable) -> float:
     """Return the mean colour difference of two materials' balls, over the pixels of the ball."""
     pictures = [draw_ball(thing.eval, SIDE) for thing in (material, drawn)]
     cover = pictures[0][1]

@@ -9,7 +9,7 @@ from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.exporting.ggx_sum import GgxSum, to_ggx_sum
-from brdfkit.materials.resolve import Material
+from brdfkit.exporting.loss import Drawable
 from brdfkit.model import Model
 
 ONE = "ggx:fresnel=coloured"
@@ -25,7 +25,7 @@ class Held:
     such as a `GgxSum`; `changes`: what the target does not hold of the model, in words.
     """
 
-    drawn: Material
+    drawn: Drawable
     content: Any
     changes: tuple[str, ...] = ()
 
