@@ -35,15 +35,11 @@ from brdfkit.model.microfacet import (
     TrowbridgeReitz,
     dielectric_reflectance,
     fifth_power,
+    grazing_share,
     schlick,
 )
 
 SMALLEST_WIDTH = 0.001  # of the slopes, as in Mitsuba
-
-
-def grazing(wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return s = (1 - V·H)⁵, by which Fresnel's reflectance rises towards grazing angles."""
-    return fifth_power(1 - cos_theta_d(wi, wo))
 
 
 @dataclass(frozen=True)
@@ -112,11 +108,11 @@ class Disney(Model):
         )
 
     def metal_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        return self.metallic * self.facets(wi, wo) * (1 - grazing(wi, wo))
+        return self.metallic * self.facets(wi, wo) * (1 - grazing_share(wi, wo))
 
     def dielectric_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
         F = dielectric_reflectance(cos_theta_d(wi, wo), self.ior)
-        F = (1 - self.metallic) * F + self.metallic * grazing(wi, wo)
+        F = (1 - self.metallic) * F + self.metallic * grazing_share(wi, wo)
         return self.facets(wi, wo) * F
 
     def facets(self, wi: JitVector, wo: JitVector) -> JitFloat:
@@ -131,7 +127,7 @@ class Disney(Model):
         return 0.25 * self.clearcoat * F * D * shadowing.G1(wi) * shadowing.G1(wo)
 
     def sheen_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        return self.sheen * (1 - self.metallic) * grazing(wi, wo)
+        return self.sheen * (1 - self.metallic) * grazing_share(wi, wo)
 
     @cached_property
     def samplings(self) -> tuple[Any, ...]:

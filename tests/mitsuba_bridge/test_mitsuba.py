@@ -30,6 +30,7 @@ def coloured(model):
     for name, value in model().values.items():
         parameter = model.parameters[name]
         value = value or (0.02 if parameter.linear else 0.3)
+        value = min(value, 0.8 * parameter.bounds[1])
         if parameter.linear:
             values[name] = [value, 0.8 * value, 0.5 * value]
         else:

@@ -31,9 +31,10 @@ class Felt(Model):
 
 
 def values(model, factor=1.0):
-    """Every parameter of a model, times `factor`, within the bounds; none is 0."""
-    given = {name: value or 0.02 for name, value in model().values.items()}
-    return {n: float(np.clip(v * factor, *model.parameters[n].bounds)) for n, v in given.items()}
+    """Every parameter of a model, times `factor`, within the bounds; none is 0 or on a bound."""
+    bounds = {name: parameter.bounds for name, parameter in model.parameters.items()}
+    given = {n: min(value or 0.02, 0.8 * bounds[n][1]) for n, value in model().values.items()}
+    return {n: float(np.clip(v * factor, *bounds[n])) for n, v in given.items()}
 
 
 def interaction(mi, u=0.1):

@@ -24,6 +24,16 @@ def schlick(f0: JitFloat, cos_theta: JitFloat) -> JitFloat:
     return f0 + (1 - f0) * fifth_power(1 - cos_theta)
 
 
+def grazing_share(wi: JitVector, wo: JitVector) -> JitFloat:
+    """Return (1 - V·H)⁵, the share of F₉₀ in the Fresnel reflectance of a facet [Schlick 1994]."""
+    return fifth_power(1 - cos_theta_d(wi, wo))
+
+
+def reflectance_from_ior(ior: JitFloat) -> JitFloat:
+    """Return Fresnel's reflectance at normal incidence for an index of refraction."""
+    return dr.square((ior - 1) / (ior + 1))
+
+
 def dielectric_reflectance(cosine: JitFloat, ior: JitFloat) -> JitFloat:
     """Return Fresnel's reflectance of a dielectric for unpolarised light from the air outside.
 
