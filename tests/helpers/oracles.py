@@ -45,10 +45,29 @@ def evaluate_in_radiance(paths, wi, wo):
     return radiance.measure(paths[0], wi, wo)
 
 
+def evaluate_by_materialx(paths, wi, wo):
+    """Cycles draws with the OSL that MaterialX generates of the file."""
+    import materialx_oracle
+
+    document = materialx_oracle.read(paths[0].read_text(encoding="utf-8"))
+    return materialx_oracle.measure_in_cycles(document, wi, wo)
+
+
+def evaluate_by_usd(paths, wi, wo):
+    """USD reads the file, MaterialX generates OSL of its network, and Cycles draws with that."""
+    import materialx_oracle
+    import usd_oracle
+
+    network = usd_oracle.read_network(usd_oracle.open_stage(paths[0]))
+    return materialx_oracle.measure_in_cycles(network, wi, wo)
+
+
 ORACLES = {
     "blender": evaluate_in_blender,
+    "materialx": evaluate_by_materialx,
     "mitsuba": evaluate_in_mitsuba,
     "osl": evaluate_in_blender,
     "python": evaluate_in_python,
     "radiance": evaluate_in_radiance,
+    "usd": evaluate_by_usd,
 }

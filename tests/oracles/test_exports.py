@@ -11,7 +11,15 @@ from brdfkit.exporting.targets import find_target
 
 pytestmark = pytest.mark.oracles
 
-TOLERANCES = {"blender": 1e-3, "osl": 1e-3, "python": 1e-12, "mitsuba": 1e-4, "radiance": 1e-3}
+TOLERANCES = {
+    "blender": 1e-3,
+    "materialx": 1e-4,
+    "mitsuba": 1e-4,
+    "osl": 1e-3,
+    "python": 1e-12,
+    "radiance": 1e-3,
+    "usd": 1e-4,
+}
 PAIRS = draw_direction_pairs(50, seed=1)
 
 

@@ -4,9 +4,10 @@ import functools
 from dataclasses import replace
 
 import materialx_oracle as oracle
+import materialx_webgl as webgl
 import numpy as np
 import pytest
-from materialx_oracle import draw_pairs
+from materialx_webgl import draw_pairs
 from six_fits import SIX_FITS, make_fit
 
 import brdfkit as bk
@@ -30,20 +31,26 @@ def write(tmp_path_factory):
     return export
 
 
-def measure_white(browser, write, content):
+@pytest.fixture(scope="module")
+def page(browser):
+    """A page that keeps its programs."""
+    return browser.new_page()
+
+
+def measure_white(page, write, content):
     """What is drawn of each highlight alone, if it reflects all light."""
     for lobe in content.lobes:
         _, text = write(GgxSum(BLACK, (replace(lobe, f0=WHITE, f90=WHITE),)))
-        yield oracle.measure(browser, oracle.read(text), *draw_pairs())
+        yield webgl.measure(page, oracle.read(text), *draw_pairs())
 
 
 @pytest.mark.parametrize("name", SIX_FITS)
-def test_webgl_draws_by_the_formula_of_glsl(name, write, browser):
+def test_webgl_draws_by_the_formula_of_glsl(name, write, page):
     content, text = write(name)
     document = oracle.read(text)
-    formula = oracle.predict(content, measure_white(browser, write, content), *draw_pairs())
+    formula = webgl.predict(content, measure_white(page, write, content), *draw_pairs())
     for turn in (0.0, 0.7) if content.is_anisotropic else (0.0,):
-        measured = oracle.measure(browser, document, *draw_pairs(turn), turn)
+        measured = webgl.measure(page, document, *draw_pairs(turn), turn)
         np.testing.assert_allclose(measured, formula, rtol=1e-4)
 
 
@@ -79,9 +86,9 @@ def test_a_document_that_is_written_again_is_the_same(write):
     assert oracle.list_network(again) == oracle.list_network(document)
 
 
-def test_glsl_brightens_a_metal_as_files_say(write, browser):
+def test_glsl_brightens_a_metal_as_files_say(write, page):
     content, text = write("metal")
-    measured = oracle.measure(browser, oracle.read(text), *draw_pairs())
+    measured = webgl.measure(page, oracle.read(text), *draw_pairs())
     ratio = measured / content.to_model().eval(*draw_pairs())
     assert np.median(ratio) == pytest.approx(1.06, abs=0.01)
 
@@ -102,11 +109,11 @@ def test_damage_is_noticed(damage, write):
         oracle.read(text.replace(*DAMAGES[damage]))
 
 
-def test_swapped_widths_are_noticed(write, browser):
+def test_swapped_widths_are_noticed(write, page):
     text = write("brushed")[1]
     swapped = text.replace('"0.36, 0.14"', '"0.14, 0.36"')
     assert swapped != text
     measured = [
-        oracle.measure(browser, oracle.read(one), *draw_pairs())[:, 0] for one in (text, swapped)
+        webgl.measure(page, oracle.read(one), *draw_pairs())[:, 0] for one in (text, swapped)
     ]
     assert np.median(np.abs(np.log(measured[1] / measured[0]))) > 0.1

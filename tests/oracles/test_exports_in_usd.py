@@ -4,7 +4,6 @@ import materialx_oracle
 import numpy as np
 import pytest
 import usd_oracle
-from materialx_oracle import draw_pairs
 from six_fits import SIX_FITS, make_fit
 
 import brdfkit as bk
@@ -21,17 +20,6 @@ def test_the_network_is_that_of_materialx(name, tmp_path):
     network = usd_oracle.read_network(usd_oracle.open_stage(usd.paths[0]))
     told = materialx_oracle.read(mtlx.paths[0].read_text(encoding="utf-8"))
     assert materialx_oracle.list_network(network) == materialx_oracle.list_network(told)
-
-
-def test_webgl_draws_the_same_as_of_materialx(tmp_path, browser):
-    files = [
-        bk.export(make_fit("coat"), target, tmp_path / f"größe 1.{suffix}").paths[0]
-        for target, suffix in (("usd", "usda"), ("materialx", "mtlx"))
-    ]
-    network = usd_oracle.read_network(usd_oracle.open_stage(files[0]))
-    networks = network, materialx_oracle.read(files[1].read_text("utf-8"))
-    values = [materialx_oracle.measure(browser, one, *draw_pairs(0.7), 0.7) for one in networks]
-    np.testing.assert_allclose(*values, rtol=1e-6)
 
 
 def test_programs_without_materialx_get_a_preview(tmp_path):
