@@ -4,7 +4,8 @@ By the standard's formula, which MaterialX's OSL has, the sum is exact. Viewers 
 GLSL that MaterialX generates differ in two ways: each highlight is multiplied by
 1 + F (1 - E) / E, E being its albedo for F = 1, and G is the isotropic one of √(α_u α_v). In the
 median over pairs of directions, a metal of α = 0.2 is 6 % brighter, and a brushed one of 0.12 and
-0.45 by 9 %, where single pairs are from 7 % darker to 50 % brighter. x is the mesh's tangent.
+0.45 by 9 %, where single pairs are from 7 % darker to 50 % brighter; balls of both differ by a mean
+ΔE of 1.8, and one of a plastic by 0.04. x is the mesh's tangent.
 """
 
 from pathlib import Path
