@@ -2,8 +2,9 @@
 
 import pytest
 
-from brdfkit.exporting import hold, loss
+from brdfkit.exporting import hold, loss, tables
 from brdfkit.exporting.targets import radiance
+from brdfkit.materials.formats.rgl.encoding import Resolution
 
 
 @pytest.fixture(autouse=True)
@@ -14,3 +15,6 @@ def few_values(monkeypatch):
     monkeypatch.setattr(hold, "LOSS", "cbrt")
     monkeypatch.setattr(radiance, "DEPTHS", (4,))
     monkeypatch.setattr(radiance, "ANISOTROPIC_DEPTH", 3)
+    monkeypatch.setattr(
+        tables, "SIZES", (Resolution(0, 6, 1, 32, 16), Resolution(3, 5, 16, 32, 12))
+    )

@@ -36,7 +36,7 @@ def cli(tmp_path, monkeypatch):
 
 
 # Tables take seconds, whatever the material
-TABLES = {"csv", "mitsuba", "radiance"}
+TABLES = {"csv", "mitsuba", "pbrt", "radiance"}
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import runpy
 
 import blender
 import numpy as np
+import pbrt_rules
 import radiance
 
 
@@ -40,6 +41,14 @@ def evaluate_in_mitsuba(paths, wi, wo):
     return np.array(values).T / wo[:, 2:]
 
 
+def evaluate_by_pbrts_rules(paths, wi, wo):
+    """The table obeys pbrt's rules, and Mitsuba's spectral variant evaluates it."""
+    table = pbrt_rules.find_table(paths[0])
+    assert paths[1:] == (table,)
+    wavelengths = pbrt_rules.read_fields(table)["wavelengths"]
+    return pbrt_rules.evaluate(table, wavelengths, wi, wo)
+
+
 def evaluate_in_radiance(paths, wi, wo):
     """Radiance's rcontrib traces rays to a plane under suns."""
     return radiance.measure(paths[0], wi, wo)
@@ -67,6 +76,7 @@ ORACLES = {
     "materialx": evaluate_by_materialx,
     "mitsuba": evaluate_in_mitsuba,
     "osl": evaluate_in_blender,
+    "pbrt": evaluate_by_pbrts_rules,
     "python": evaluate_in_python,
     "radiance": evaluate_in_radiance,
     "usd": evaluate_by_usd,

@@ -16,6 +16,7 @@ TOLERANCES = {
     "materialx": 1e-4,
     "mitsuba": 1e-4,
     "osl": 1e-3,
+    "pbrt": 1e-4,
     "python": 1e-12,
     "radiance": 1e-3,
     "usd": 1e-4,

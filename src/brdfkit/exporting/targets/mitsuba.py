@@ -8,11 +8,9 @@ from pathlib import Path
 
 from brdfkit.exporting.filling import write_bytes, write_template
 from brdfkit.exporting.ggx_sum import to_ggx_sum
-from brdfkit.exporting.tables import hold_table
+from brdfkit.exporting.tables import BSDF, hold_bsdf
 from brdfkit.exporting.target import Held, Target
 from brdfkit.model import Model
-
-TABLE = ".bsdf"
 
 
 def hold(model: Model) -> Held:
@@ -20,14 +18,14 @@ def hold(model: Model) -> Held:
     content = to_ggx_sum(model)
     if content is not None and not content.lobes and max(content.diffuse) <= 1:
         return Held(model, content)
-    return hold_table(model, model, TABLE, "interpolated in a table")
+    return hold_bsdf(model, model)
 
 
 def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
     """Write the scene file with the material, and the table beside it."""
     files = [path]
     if isinstance(held.content, bytes):
-        files.append(write_bytes(path.with_suffix(TABLE), held.content))
+        files.append(write_bytes(path.with_suffix(BSDF), held.content))
         kind, entries = "measured", [("string", "filename", files[1].name)]
     else:
         colour = " ".join(map(repr, held.content.diffuse))

@@ -83,7 +83,11 @@ def write(obj: Any, stream: IO[bytes]) -> None:
         raise BrdfkitError(
             f"a {type(obj).__name__} has no BRDF; save a measured material, a model or a fit."
         )
-    brdf = encode_brdf(obj.eval)
+    write_table(obj, encode_brdf(obj.eval), stream)
+
+
+def write_table(obj: Any, brdf: AdaptiveTable, stream: IO[bytes]) -> None:
+    """Write the table of an object's BRDF, as `write` does."""
     tables = {f.name: getattr(brdf.parameterisation, f.name) for f in fields(Parameterisation)}
     tables |= {
         "luminance": brdf.density,

@@ -59,14 +59,19 @@ ISOTROPIC = Resolution(phi_i=0, theta_i=64, phi_m=1, theta_m=256, grid=112)
 ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
 
-def encode_brdf(f: Lookup) -> AdaptiveTable:
+def encode_brdf(
+    f: Lookup, sizes: tuple[Resolution, Resolution] | None = None, *, whole_circle: bool = False
+) -> AdaptiveTable:
     """Tabulate the BRDF f in the adaptive parameterisation, densely where f is large.
 
-    Raises `BrdfkitError` where f is not finite.
+    `sizes` are the numbers of nodes if f is isotropic, and if not; by default those of written
+    files. `whole_circle` says whether a table that is not isotropic has azimuths in the whole
+    circle even where f is symmetric. Raises `BrdfkitError` where f is not finite.
     """
     # Choose the directions at which f is tabulated
     quarters = detect_symmetry(f)
-    grid = build_parameterisation(f, quarters, ANISOTROPIC if quarters else ISOTROPIC)
+    size = (sizes or (ISOTROPIC, ANISOTROPIC))[quarters > 0]
+    grid = build_parameterisation(f, 4 if whole_circle and quarters else quarters, size)
     n = grid.vndf.shape[-1]
     wi, wo, m, factor = grid.reflect_light_on_grid(n)
     # Compute the values M that the file stores for these directions
