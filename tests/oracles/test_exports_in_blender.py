@@ -57,3 +57,13 @@ def test_a_ball_is_the_same_in_blender(name, tmp_path):
         picture += blender.draw_ball(done.paths[0], side, VIEW, sun=sun)[inside]
     white = np.percentile(truth, 99)
     assert ciede2000(truth / white, picture / white).mean() < 0.1
+
+
+def test_a_blender_that_fails_is_a_warning(tmp_path, monkeypatch):
+    program = tmp_path / "blender"
+    program.write_text("#!/bin/sh\necho no display >&2\nexit 1\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    with pytest.warns(UserWarning, match=r"made no \.blend of it \(no display\)"):
+        done = bk.export(make_fit("metal"), "blender", tmp_path / "a.py")
+    assert [path.name for path in done.paths] == ["a.py"]

@@ -12,6 +12,7 @@ import importlib.util
 import shutil
 import subprocess
 import sys
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,7 +20,6 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.errors import BrdfkitError
 from brdfkit.exporting.filling import write_bytes, write_template
 from brdfkit.exporting.ggx_sum import GgxLobe, GgxSum, to_ggx_sum
 from brdfkit.exporting.target import Held, Target, hold_nearest_sum
@@ -79,31 +79,39 @@ def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
         lobes=[_to_nodes(lobe) for lobe in held.content.lobes],
         comment=comment,
     )
-    blender = _find_blender()
-    return [path, _save_blend(blender, path)] if blender else [path]
+    return [path, *_save_blend(path)]
 
 
 def _find_blender() -> list[str]:
     """Return the start of a command line that runs a program in Blender, or [] without Blender."""
-    if importlib.util.find_spec("bpy"):
+    spec = importlib.util.find_spec("bpy")
+    if spec and spec.origin:  # otherwise a folder has this name
         return [sys.executable]
     blender = shutil.which("blender")
     return [blender, "--background", "--python"] if blender else []
 
 
-def _save_blend(blender: list[str], program: Path) -> Path:
-    """Run the program in Blender, and return the .blend that it saved beside itself."""
+def _save_blend(program: Path) -> list[Path]:
+    """Run the program in Blender, if it is at hand; return the .blend that it saved beside itself.
+
+    The program alone is enough, so a failure is only a warning.
+    """
+    blender = _find_blender()
+    if not blender:
+        return []
     with TemporaryDirectory(prefix="brdfkit-") as folder:
         made = Path(folder, "material.blend")
         words = [*blender, str(program), "--", str(made)]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
-        if not made.is_file():
-            reason = (done.stderr.strip() or done.stdout.strip()).splitlines()[-1:]
-            raise BrdfkitError(
-                f"{program}: written, but Blender made no .blend of it ({''.join(reason)}); run it "
-                "in Blender's text editor."
-            )
-        return write_bytes(program.with_suffix(".blend"), made.read_bytes())
+        if made.is_file():
+            return [write_bytes(program.with_suffix(".blend"), made.read_bytes())]
+    reason = "".join((done.stderr.strip() or done.stdout.strip()).splitlines()[-1:])
+    warnings.warn(
+        f"{program} is written, but Blender made no .blend of it ({reason}); run it in Blender's "
+        "text editor.",
+        stacklevel=2,
+    )
+    return []
 
 
 def _to_nodes(lobe: GgxLobe) -> dict[str, Any]:

@@ -21,7 +21,7 @@ def draw_ball(brdf: Brdf, side: int) -> tuple[AnyArray, AnyArray]:
     covers (side, side). The light and the exposure are the same for all materials.
     """
     x, y, cover = _place_pixels(side)
-    values = _compute_radiance(brdf, x[cover > 0], y[cover > 0]) * _compute_exposure()
+    values = _compute_radiance(brdf, x[cover > 0], y[cover > 0]) * compute_exposure()
     picture = np.zeros((side, side, values.shape[1]))
     picture[cover > 0] = values
     return picture, cover
@@ -50,7 +50,7 @@ def _compute_radiance(brdf: Brdf, x: AnyArray, y: AnyArray) -> AnyArray:
 
 
 @cache
-def _compute_exposure() -> float:
+def compute_exposure() -> float:
     """Return the exposure of all pictures, which gives a matt white ball the peak `WHITE`."""
     x, y, cover = _place_pixels(32)
     white = _compute_radiance(
