@@ -27,6 +27,9 @@ DEPTHS, LARGEST_ERROR = (5, 6, 7), 0.05
 ANISOTROPIC_DEPTH = 5  # one more would need 100 MB
 TOLERANCE = 0.04  # the largest difference of values in a leaf, as a share of their mean
 COLOUR_TOLERANCE = 0.01  # the same of u′ and v′
+# Where all cells of a colour are brighter, Radiance takes the least off, as a diffuse part of wrong
+# hue. One cell, at grazing angles, gets this value
+DARK = 0.003
 # Chromaticities (x, y, z) of Radiance's primaries, whose sum is its white, (⅓, ⅓, ⅓)
 PRIMARIES = np.array([[0.64, 0.33, 0.03], [0.29, 0.6, 0.11], [0.15, 0.06, 0.79]])
 TO_XYZ = (PRIMARIES.T * np.linalg.solve(PRIMARIES.T, np.ones(3))).T  # multiplies rows from the left
@@ -50,10 +53,10 @@ def _make_trees(cells: FloatArray) -> FloatArray:
     """Return Y and, unless all is grey, u′ and v′ (..., 3 or 1), of cells (..., channels)."""
     xyz = np.broadcast_to(cells, (*cells.shape[:-1], 3)) @ TO_XYZ
     Y = round_digits(merge_cells(xyz[..., 1], TOLERANCE))
-    # Where all cells are bright, Radiance takes the least value off as a diffuse part of wrong hue
-    Y[(0,) * Y.ndim] = 0
     if np.allclose(cells, cells[..., :1], rtol=1e-4):
         return Y[..., None]
+    corner = (0,) * Y.ndim
+    Y[corner] = min(Y[corner], DARK)
     xyz = np.where(Y[..., None] > 0, xyz, 1.0)
     sums = xyz @ (1, 15, 3)
     colours = (factor * xyz[..., axis] / sums for factor, axis in ((4, 0), (9, 1)))
