@@ -3,7 +3,7 @@
 import pytest
 
 from brdfkit.exporting import hold, loss, tables
-from brdfkit.exporting.targets import radiance
+from brdfkit.exporting.targets import openmaterial, radiance
 from brdfkit.materials.formats.rgl.encoding import Resolution
 
 
@@ -18,3 +18,4 @@ def few_values(monkeypatch):
     monkeypatch.setattr(
         tables, "SIZES", (Resolution(0, 6, 1, 32, 16), Resolution(3, 5, 16, 32, 12))
     )
+    monkeypatch.setattr(openmaterial, "THETA", (0, 30, 60, 85))

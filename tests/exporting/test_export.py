@@ -36,7 +36,7 @@ def cli(tmp_path, monkeypatch):
 
 
 # Tables take seconds, whatever the material
-TABLES = {"csv", "mitsuba", "pbrt", "radiance"}
+TABLES = {"csv", "mitsuba", "openmaterial", "pbrt", "radiance"}
 
 
 @pytest.mark.parametrize(
@@ -145,10 +145,13 @@ def test_only_exportable_models_are_ranked(cli):
     assert cli("fit", "red_plastic", "-m", "ward", "--exportable", "blender")[0] == 2
 
 
-def test_weights_in_a_spectrum_become_rgb(tmp_path):
+def test_weights_in_a_spectrum_become_rgb_where_they_must(tmp_path):
     model = bk.models()["ggx"](wavelengths=[450, 550, 650], diffuse_reflectance=[0.1, 0.2, 0.3])
     done = bk.export(model, "python", tmp_path / "a.py")
     assert done.changes == ("3 wavelengths became linear sRGB",)
+    done = bk.export(model, "openmaterial", tmp_path / "a.xomp")
+    assert done.changes == ("interpolated between angles",)
+    assert json.loads(done.paths[1].read_text())["brdf"]["wavelengths"] == [4.5e-7, 5.5e-7, 6.5e-7]
 
 
 @pytest.mark.parametrize("target", ["python", "blender"])

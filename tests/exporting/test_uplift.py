@@ -5,7 +5,7 @@ from six_fits import make_fit
 
 from brdfkit.core.colours import compute_rgb_weights
 from brdfkit.exporting.loss import draw_direction_pairs
-from brdfkit.exporting.uplift import WAVELENGTHS, Uplifted, compute_primaries
+from brdfkit.exporting.uplift import WAVELENGTHS, Spectral, compute_primaries
 
 
 def test_spectra_become_their_colours():
@@ -15,5 +15,5 @@ def test_spectra_become_their_colours():
     weights = compute_rgb_weights(WAVELENGTHS, "spectrum")
     np.testing.assert_allclose(spectra @ weights, np.eye(3), atol=1e-12)
     model, pairs = make_fit("coat"), draw_direction_pairs(100)
-    values = Uplifted(model).eval(*pairs)
+    values = Spectral(model).eval(*pairs)
     np.testing.assert_allclose(values @ weights, model.eval(*pairs), rtol=1e-9)

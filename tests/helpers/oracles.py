@@ -8,6 +8,7 @@ import runpy
 
 import blender
 import numpy as np
+import openmaterial
 import pbrt_rules
 import radiance
 
@@ -49,6 +50,11 @@ def evaluate_by_pbrts_rules(paths, wi, wo):
     return pbrt_rules.evaluate(table, wavelengths, wi, wo)
 
 
+def evaluate_by_openmaterial(paths, wi, wo):
+    """The rows are read again, and SciPy interpolates between them."""
+    return openmaterial.evaluate(openmaterial.find_table(paths[0]), wi, wo)
+
+
 def evaluate_in_radiance(paths, wi, wo):
     """Radiance's rcontrib traces rays to a plane under suns."""
     return radiance.measure(paths[0], wi, wo)
@@ -75,6 +81,7 @@ ORACLES = {
     "blender": evaluate_in_blender,
     "materialx": evaluate_by_materialx,
     "mitsuba": evaluate_in_mitsuba,
+    "openmaterial": evaluate_by_openmaterial,
     "osl": evaluate_in_blender,
     "pbrt": evaluate_by_pbrts_rules,
     "python": evaluate_in_python,

@@ -15,6 +15,7 @@ TOLERANCES = {
     "blender": 1e-3,
     "materialx": 1e-4,
     "mitsuba": 1e-4,
+    "openmaterial": 1e-4,
     "osl": 1e-3,
     "pbrt": 1e-4,
     "python": 1e-12,

@@ -11,12 +11,14 @@ from brdfkit.exporting.target import Held
 from brdfkit.model import Model
 from brdfkit.regression import Fit
 
+LICENCE = "Licence of the measured data: "
+
 
 def make_comment(thing: Fit | Model, held: Held, loss: Loss, command: str) -> list[str]:
     """Return the lines of the comment: source, licence, widths, losses, version and command."""
     lines = [f"{_describe_source(thing)}, exported by brdfkit {__version__}"]
     if isinstance(thing, Fit) and (licence := find_licence(thing.data)):
-        lines.append(f"Licence of the measured data: {licence}")
+        lines.append(f"{LICENCE}{licence}")
     content = to_ggx_sum(held.drawn) if isinstance(held.drawn, Model) else None
     for number, lobe in enumerate(content.lobes if content else (), 1):
         widths = f"alpha_u = {lobe.alpha_u:.6g}, alpha_v = {lobe.alpha_v:.6g}"

@@ -23,8 +23,12 @@ LOSS = "picture"  # a ball is what the loss of an export is told by
 def hold(thing: Fit | Model, target: Target) -> tuple[Held, Loss]:
     """Return what a target draws of a fit or a model, and how far it is from it."""
     model = thing.rgb
-    changes = _list_changes_of_colour(thing)
-    held = target.hold(model)
+    if target.spectral:
+        changes: tuple[str, ...] = ()
+        held = target.hold(thing.model if isinstance(thing, Fit) else thing)
+    else:
+        changes = _list_changes_of_colour(thing)
+        held = target.hold(model)
     if held is None:
         held, loss = refit(model, target)
         label = held.drawn.name

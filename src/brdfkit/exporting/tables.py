@@ -6,7 +6,7 @@ from io import BytesIO
 from pathlib import Path
 
 from brdfkit.exporting.target import Held
-from brdfkit.exporting.uplift import Uplifted
+from brdfkit.exporting.uplift import Spectral
 from brdfkit.materials.formats import rgl
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats.rgl.encoding import Resolution, encode_brdf
@@ -21,7 +21,7 @@ SIZES = (
 )
 
 
-def hold_bsdf(model: Model, material: Model | Uplifted, *, whole_circle: bool = False) -> Held:
+def hold_bsdf(model: Model, material: Model | Spectral, *, whole_circle: bool = False) -> Held:
     """Return what a program draws of a table of the `model` in the format of RGL, `.bsdf`.
 
     `material` is what the table has the values of: the model in linear sRGB, or in spectra.

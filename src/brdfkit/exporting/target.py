@@ -38,7 +38,8 @@ class Target:
     suffix of its file; `holds`: what it can hold, in words, by `COLUMNS`; `hold`: function that
     returns what the target draws of a model in linear sRGB, or None if it cannot hold the model's
     form; `write`: function that writes what `hold` returned to a path, with a comment of several
-    lines, and returns the files; `candidates`: labels of models to fit to other materials.
+    lines, and returns the files; `candidates`: labels of models to fit to other materials;
+    `spectral`: whether `hold` takes models whose weights are spectra, as they are.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Target:
     hold: Callable[[Model], Held | None]
     write: Callable[[Held, Path, list[str]], list[Path]]
     candidates: tuple[str, ...] = GGX_SUMS
+    spectral: bool = False
 
     def check_path(self, path: str | Path) -> Path:
         """Return the path to write; raise `BrdfkitError` if it has another suffix."""

@@ -20,23 +20,35 @@ WAVELENGTHS = tuple(float(nm) for nm in range(400, 701, 20))
 
 
 @dataclass(frozen=True)
-class Uplifted:
-    """A model in linear sRGB whose values are spectra; it can be written as a spectral material.
+class Spectral:
+    """A model whose values are spectra, of its own wavelengths or of its colours.
 
-    The values of `eval` are at `WAVELENGTHS` [nm].
+    It can be written as a spectral material.
     """
 
     model: Model
-    wavelengths: tuple[float, ...] = WAVELENGTHS
 
     @property
     def name(self) -> str:
         """The name of the model."""
         return self.model.name
 
+    @property
+    def wavelengths(self) -> tuple[float, ...]:
+        """The wavelengths of the values [nm]."""
+        return self.model.wavelengths or WAVELENGTHS
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """In words, that colours became spectra, if they did."""
+        words = f"linear sRGB became spectra of {len(WAVELENGTHS)} wavelengths"
+        return () if self.model.wavelengths else (words,)
+
     def eval(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         """Return the BRDF [sr⁻¹] (n, wavelengths) for directions to light and viewer, (n, 3)."""
         values = self.model.eval(wi, wo)
+        if self.model.wavelengths:
+            return values
         return np.broadcast_to(values, (len(values), 3)) @ compute_primaries()
 
 

@@ -10,15 +10,15 @@ from pathlib import Path
 from brdfkit.exporting.filling import to_identifier, write_bytes, write_template
 from brdfkit.exporting.tables import BSDF, hold_bsdf
 from brdfkit.exporting.target import Held, Target
-from brdfkit.exporting.uplift import WAVELENGTHS, Uplifted
+from brdfkit.exporting.uplift import Spectral
 from brdfkit.model import Model
 
 
 def hold(model: Model) -> Held:
     """Return the table of the model, whose azimuths span the circle as pbrt demands."""
-    held = hold_bsdf(model, Uplifted(model), whole_circle=True)
-    words = f"linear sRGB became spectra of {len(WAVELENGTHS)} wavelengths"
-    return replace(held, changes=(*held.changes, words))
+    spectral = Spectral(model)
+    held = hold_bsdf(model, spectral, whole_circle=True)
+    return replace(held, changes=(*held.changes, *spectral.changes))
 
 
 def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
@@ -40,5 +40,6 @@ TARGET = Target(
         "else": "any, in a table",
     },
     hold=hold,
+    spectral=True,
     write=write,
 )
