@@ -114,6 +114,8 @@ def test_targets_are_listed(cli):
 WRONG = {
     "target": (("ggx", "maya", "-o", "a.py"), "no target 'maya'"),
     "no target": (("ggx",), "Name a target to export ggx to: "),
+    "name": (("ggx", "pbrt", "-o", "a\udcff.pbrt"), "bytes that are no UTF-8"),
+    "line": (("ggx", "pbrt", "-o", "a\nb.pbrt"), "ab.pbrt: its name has control characters"),
     "suffix": (("ggx", "python", "-o", "a.txt"), "is written as .py; choose a.py"),
     "measured": (("car_paint", "python", "-o", "a.py"), "was measured; fit a model to it first"),
     "damaged": (("damaged.json", "python", "-o", "a.py"), "damaged.json"),
@@ -135,6 +137,17 @@ def test_an_error_is_a_sentence(case, cli, tmp_path):
     assert says in " ".join(output.split())
     assert "Traceback" not in output
     assert sorted(p.name for p in tmp_path.iterdir()) == ["damaged.json", "foreign.json", "kept.py"]
+
+
+@pytest.mark.parametrize(
+    ("target", "table"),
+    [("mitsuba", "ggx.bsdf"), ("openmaterial", "ggx_brdf.xompt"), ("pbrt", "ggx.bsdf")],
+)
+def test_another_table_is_kept(target, table, cli, tmp_path):
+    (tmp_path / table).write_text("measured")
+    status, output = cli("export", "ggx", target)
+    assert (status, f"{table} exists already" in output) == (2, True)
+    assert [path.name for path in tmp_path.iterdir()] == [table]
 
 
 def test_only_exportable_models_are_ranked(cli):

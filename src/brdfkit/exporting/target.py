@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.names import to_printable
 from brdfkit.exporting.ggx_sum import GgxSum, to_ggx_sum
 from brdfkit.exporting.loss import Drawable
 from brdfkit.model import Model
@@ -52,8 +53,14 @@ class Target:
     spectral: bool = False
 
     def check_path(self, path: str | Path) -> Path:
-        """Return the path to write; raise `BrdfkitError` if it has another suffix."""
+        """Return the path to write; raise `BrdfkitError` for another suffix, and a wrong name."""
         path = Path(path)
+        shown = to_printable(path.name)
+        if shown != path.name:  # files state their names
+            raise BrdfkitError(
+                f"{shown}: its name has control characters, or bytes that are no UTF-8; choose "
+                "another name."
+            )
         if path.suffix.lower() != self.suffix:
             raise BrdfkitError(
                 f"{path}: a material for {self.name} is written as {self.suffix}; choose "

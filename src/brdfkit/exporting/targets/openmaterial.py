@@ -71,10 +71,10 @@ def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
     brdf = {"wavelengths": wavelengths, "lookupTable": []}
     table = path.with_name(f"{to_identifier(path.stem)}_brdf.xompt")
     properties = {"brdfUris": [table.name]}
-    return [
-        _write(path, "material", metadata, {"materialProperties": properties}),
-        _write(table, "material_brdf", metadata | facts, {"brdf": brdf}, ",\n".join(rows)),
-    ]
+    # The table first: if there is another of this name, nothing is written
+    _write(table, "material_brdf", metadata | facts, {"brdf": brdf}, ",\n".join(rows))
+    _write(path, "material", metadata, {"materialProperties": properties})
+    return [path, table]
 
 
 def _list_rows(nanometres: tuple[float, ...], table: AngleTable) -> tuple[list[float], list[str]]:
@@ -93,8 +93,8 @@ def _list_rows(nanometres: tuple[float, ...], table: AngleTable) -> tuple[list[f
 
 def _write(
     path: Path, schema: str, metadata: dict[str, Any], content: dict[str, Any], rows: str = ""
-) -> Path:
-    """Write a file of a `schema`, whose empty `lookupTable` gets the `rows`; return its path.
+) -> None:
+    """Write a file of a `schema`, whose empty `lookupTable` gets the `rows`.
 
     The file's identity follows from the content, so that the same export makes the same file.
     """
@@ -105,7 +105,6 @@ def _write(
     }
     text = json.dumps(words | content, ensure_ascii=False, indent=1)
     write_text(path, text.replace('"lookupTable": []', f'"lookupTable": [\n{rows}\n]') + "\n")
-    return path
 
 
 TARGET = Target(
