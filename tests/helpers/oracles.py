@@ -5,6 +5,7 @@ returns values (n, 3) in sr⁻¹; it skips where its program is not at hand.
 """
 
 import runpy
+import shutil
 
 import blender
 import numpy as np
@@ -77,8 +78,21 @@ def evaluate_by_usd(paths, wi, wo):
     return materialx_oracle.measure_in_cycles(network, wi, wo)
 
 
+def evaluate_in_three(paths, wi, wo):
+    """three.js draws a plane under a light in Chromium, by glTF's own formula."""
+    import gltf_oracle
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=shutil.which("chromium"), args=["--no-sandbox"]
+        )
+        return gltf_oracle.measure(browser, paths[0], wi, wo)
+
+
 ORACLES = {
     "blender": evaluate_in_blender,
+    "gltf": evaluate_in_three,
     "materialx": evaluate_by_materialx,
     "mitsuba": evaluate_in_mitsuba,
     "openmaterial": evaluate_by_openmaterial,

@@ -12,6 +12,7 @@ from brdfkit.exporting.targets import find_target
 pytestmark = pytest.mark.oracles
 
 TOLERANCES = {
+    "gltf": 1e-2,  # the single precision of a shader at grazing angles
     "blender": 1e-3,
     "materialx": 1e-4,
     "mitsuba": 1e-4,

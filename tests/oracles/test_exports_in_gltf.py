@@ -16,7 +16,12 @@ MATERIALS = {
     "plastic": {"base_color": [0.4, 0.1, 0.05], "roughness": 0.4, "ior": 1.7, "specular": 0.8},
     "along": {"base_color": [0.9, 0.6, 0.3], "metallic": 1.0, "roughness": 0.4, "anisotropy": 0.7},
     "coat": {"base_color": [0.4, 0.1, 0.05], "clearcoat": 0.9, "clearcoat_roughness": 0.3},
-    "across": {"base_color": 0.5, "metallic": 0.6, "roughness": 0.4, "anisotropy": -0.7},
+    "across": {
+        "base_color": [0.5, 0.4, 0.3],
+        "metallic": 0.6,
+        "roughness": 0.4,
+        "anisotropy": -0.7,
+    },
 }
 
 

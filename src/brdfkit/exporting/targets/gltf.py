@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.exporting.filling import write_bytes
@@ -41,12 +42,12 @@ class CoatedBase:
         """The name of the model."""
         return self.model.name
 
-    def eval(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    def eval(self, wi: FloatArray, wo: FloatArray) -> NDArray[np.float64]:
         """Return the BRDF [sr⁻¹] (n, channels) for directions to light and viewer, (n, 3) each."""
         base = self.model.changed(clearcoat=0.0).eval(wi, wo)
         coat = self.model.changed(base_color=0.0, metallic=0.0, specular=0.0).eval(wi, wo)
         passing = 1 - self.model.clearcoat * schlick(COAT_F0, wo[:, 2:])
-        return base * passing + coat
+        return np.asarray(base * passing + coat)
 
 
 def hold(model: Model) -> Held | None:
