@@ -12,7 +12,8 @@ from brdfkit.exporting.targets import find_target
 pytestmark = pytest.mark.oracles
 
 TOLERANCES = {
-    "gltf": 1e-2,  # the single precision of a shader at grazing angles
+    # three.js darkens the diffuse term by an F₉₀ between those of metal and plastic
+    "gltf": 1e-2,
     "blender": 1e-3,
     "materialx": 1e-4,
     "mitsuba": 1e-4,
