@@ -18,17 +18,10 @@ paper. The albedo of other surfaces is larger than in the paper, by at most 0.00
 paints: flat, with retro-reflection, without gloss.
 """
 
-import math
-
-import drjit as dr
-
 from brdfkit.core.array_types import JitFloat, JitVector
-from brdfkit.core.geometry.vectors import dot
 from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
-
-C1, C2 = 1 / 2 - 2 / (3 * math.pi), 2 / 3 - 28 / (15 * math.pi)
-
+from brdfkit.model.rough_diffuse import scatter_often, scatter_once
 
 # The ball in the picture on the model's page: rough plaster, saturated by scattering between facets
 PICTURE = {
@@ -42,37 +35,11 @@ class EON(Model):
     roughness = shape(0.5, (0.0, 1.0), "r: roughness of the facets")
 
     def single_scattering(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        s = dot(wi, wo) - wi.z * wo.z
-        t = dr.select(s > 0, dr.maximum(wi.z, wo.z), 1)
-        return self.facet_factor() * (1 + self.roughness * s / t) / dr.pi
+        return scatter_once(wi, wo, self.roughness)
 
     def multiple_scattering(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        # The common factor r A of 1 - E and 1 - Ē is cancelled from the formula's fraction
-        return (
-            self.roughness
-            * self.facet_factor()
-            * lost_albedo(wi.z)
-            * lost_albedo(wo.z)
-            / ((C1 - C2) * dr.pi)
-        )
-
-    def facet_factor(self) -> JitFloat:
-        return 1 / (1 + C1 * self.roughness)
+        return scatter_often(wi, wo, self.roughness)
 
     def lobes(self) -> tuple[Lobe, ...]:
-        return (
-            Lobe(
-                self.single_scattering, Cosine(), quadratic=self.multiple_scattering, diffuse=True
-            ),
-        )
-
-
-def lost_albedo(cosine: JitFloat) -> JitFloat:
-    """Return the share of light that facets scatter again, divided by r A of the model's formula.
-
-    This is (1 - E) / (r A) = c₁ - G/π, for a direction with this `cosine` to the normal.
-    """
-    sine = dr.sqrt(dr.maximum(1 - cosine * cosine, 1e-14))
-    grazing = sine * cosine * (1 + sine + sine * sine) / (1 + sine)  # tanθ (1 - sin³θ), no 0/0
-    G = sine * (dr.safe_acos(cosine) - sine * cosine) + 2 / 3 * (grazing - sine)
-    return C1 - G / dr.pi
+        once, often = self.single_scattering, self.multiple_scattering
+        return (Lobe(once, Cosine(), quadratic=often, diffuse=True),)

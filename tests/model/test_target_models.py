@@ -1,5 +1,7 @@
 """Models of other renderers: their formulas, and fits whose weights have bounds on both sides."""
 
+import importlib
+
 import numpy as np
 import pytest
 from random_models import random_model
@@ -7,10 +9,14 @@ from scipy.optimize import lsq_linear
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import draw_direction_pairs
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.core.geometry.quadrature import directional_albedo
+from brdfkit.core.jit import double_precision
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import to_material
 from brdfkit.model import labels
 from brdfkit.model.evaluation import compute_fixed_values, compute_lobe_values
+from brdfkit.model.ggx_albedo import schlick_albedo
 
 DISNEY = bk.models()["disney"]
 MITSUBAS_NAMES = {"anisotropy": "anisotropic", "ior": "eta"}
@@ -28,6 +34,37 @@ def test_disney_is_mitsubas_principled(llvm_variant, seed):
     theirs = to_material({"type": "principled", **entries})
     wi, wo = draw_direction_pairs(2000, seed, 85)
     np.testing.assert_allclose(ours.eval(wi, wo), theirs.eval(wi, wo), rtol=1e-3)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("roughness", [0.05, 0.3, 1.0])
+@pytest.mark.parametrize("degrees", [0, 50, 80, 88])
+def test_an_albedo_is_that_of_a_quadrature(roughness, degrees):
+    """To 1e-3, and at two reflectances, so both of its polynomials are right."""
+    wi, alpha = from_angles(np.radians(degrees), 0.3), roughness**2
+    cosine = double_precision.to_scalar(np.cos(np.radians(degrees)))
+    for f0 in (0.04, 1.0):
+        facets = bk.models()["ggx"](
+            diffuse_reflectance=0, specular_reflectance=1, alpha_u=alpha, f0=f0
+        )
+        found = schlick_albedo(cosine, double_precision.to_scalar(alpha), f0)
+        assert float(found[0]) == pytest.approx(directional_albedo(facets.eval, wi)[0], abs=1e-3)
+
+
+@pytest.mark.quick
+def test_fuzz_is_a_transformed_cosine_of_its_albedo():
+    """Before both directions are exchanged, and the mean is taken."""
+    openpbr = importlib.import_module(bk.models()["openpbr"].__module__)
+
+    def evaluate(wi, wo):
+        pair = (double_precision.to_vector(w) for w in (wi, wo))
+        return np.array(openpbr.scatter_by_fuzz(*pair, double_precision.to_scalar(0.5)))[:, None]
+
+    for degrees in (0, 40, 80):
+        cosine = np.cos(np.radians(degrees))
+        expected = openpbr.fuzz_albedo(cosine, 0.5)
+        albedo = directional_albedo(evaluate, from_angles(np.radians(degrees), 0.3))[0]
+        assert albedo == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.quick

@@ -176,6 +176,8 @@ def _explain_bound(fitted: Model, name: str, highlight: NDArray[np.float64]) -> 
     upper = math.isclose(value, high, rel_tol=1e-5)
     if not upper and not math.isclose(value, low, rel_tol=1e-5, abs_tol=1e-9):
         return ""
+    if _is_parameter_of_kind(name, "ior") and fitted.fixed_lobes():
+        return ""  # its lobe has no weight, and may well be black
     if (_is_parameter_of_kind(name, "f0") or _is_parameter_of_kind(name, "ior")) and not upper:
         return "such a lobe shines at grazing angles alone, and its weight is no reflectance"
     if _is_parameter_of_kind(name, "f0"):  # f0 = 1 is usual for metals, and for one lobe of several
