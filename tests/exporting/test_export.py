@@ -84,6 +84,19 @@ def test_a_saved_fit_tells_its_data_and_licence(cli, tmp_path):
     assert "Made by: brdfkit export 'rot, ähnlich.json' python -o 'rot, ähnlich.py'" in text
 
 
+def test_materialx_has_openpbr_by_its_names(tmp_path):
+    model = bk.models()["openpbr"](specular_roughness_anisotropy=-0.5, coat_weight=0.5)
+    done = bk.export(model, "materialx", tmp_path / "a.mtlx")
+    loss = measure_loss(model, done.drawn)
+    assert (done.log_error, done.delta_e) == (loss.log_error, loss.delta_e)
+    assert 0 < done.delta_e < 1
+    (surface,) = ElementTree.parse(done.paths[0]).getroot().iter("open_pbr_surface")
+    inputs = {given.get("name"): given for given in surface}
+    assert inputs["coat_weight"].get("value") == "0.5"
+    assert inputs["specular_roughness_anisotropy"].get("value") == "0.5"
+    assert inputs["geometry_tangent"].get("nodename") == "a_bitangent"
+
+
 def test_the_same_command_makes_the_same_file(cli, tmp_path):
     words = "export", "ggx", "glsl", "--set", "alpha_u=0.3", "-o", "a.glsl"
     cli(*words)

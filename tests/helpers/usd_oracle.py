@@ -10,7 +10,12 @@ import pytest
 
 Usd = pytest.importorskip("pxr.Usd", reason="usd-core is not installed: make oracles")
 
-TYPES = {"color3f": "color3", "float2": "vector2", "token": "BSDF"}  # MaterialX's, by USD's
+TYPES = {
+    "color3f": "color3",
+    "float2": "vector2",
+    "float3": "vector3",
+    "token": "BSDF",
+}  # MaterialX's, by USD's
 
 
 def open_stage(file):

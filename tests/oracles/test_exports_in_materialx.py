@@ -11,7 +11,9 @@ from materialx_webgl import draw_pairs
 from six_fits import SIX_FITS, make_fit
 
 import brdfkit as bk
-from brdfkit.exporting.ggx_sum import BLACK, GgxSum, to_ggx_sum
+from brdfkit.exporting.ggx_sum import BLACK, GgxLobe, GgxSum, to_ggx_sum
+from brdfkit.exporting.loss import compute_log_error
+from brdfkit.model import labels
 
 pytestmark = pytest.mark.oracles
 WHITE = 1.0, 1.0, 1.0
@@ -91,6 +93,44 @@ def test_glsl_brightens_a_metal_as_files_say(write, page):
     measured = webgl.measure(page, oracle.read(text), *draw_pairs())
     ratio = measured / content.to_model().eval(*draw_pairs())
     assert np.median(ratio) == pytest.approx(1.06, abs=0.01)
+
+
+PLASTIC = {"base_color": [0.5, 0.1, 0.05], "specular_roughness": 0.4}
+OPENPBR = {
+    "plastic": PLASTIC,
+    "coat": {**PLASTIC, "coat_weight": 1.0, "coat_roughness": 0.2},
+    "cloth": {**PLASTIC, "fuzz_weight": 1.0, "fuzz_color": [0.9, 0.5, 0.6]},
+}
+
+
+@pytest.mark.parametrize("case", OPENPBR)
+def test_webgl_draws_openpbr_as_was_told(case, page, tmp_path):
+    model, (wi, wo) = labels.model("openpbr:form=full")(**OPENPBR[case]), draw_pairs()
+    done = bk.export(model, "materialx", tmp_path / "a.mtlx")
+    document = oracle.read(done.paths[0].read_text(encoding="utf-8"))
+    measured = webgl.measure(page, document, wi, wo)
+    truth, told = model.eval(wi, wo), done.drawn.eval(wi, wo)
+    assert np.median(np.abs(measured / told - 1)) < 0.02
+    errors = [compute_log_error(truth, values, wi, wo) for values in (measured, told)]
+    assert errors[0] == pytest.approx(errors[1], rel=0.2)
+
+
+@pytest.mark.parametrize("anisotropy", [0.6, -0.6])
+def test_webgl_draws_a_brush_of_openpbr_along_the_tangent(anisotropy, write, page, tmp_path):
+    values = {"base_metalness": 1.0, "specular_roughness": 0.5, "base_color": [0.9, 0.6, 0.3]}
+    model = bk.models()["openpbr"](**values, specular_roughness_anisotropy=anisotropy)
+    done = bk.export(model, "materialx", tmp_path / "a.mtlx")
+    assert not done.changes
+    wide = 0.25 * np.sqrt(2 / (1 + 0.4**2))
+    widths = (wide, 0.4 * wide) if anisotropy > 0 else (0.4 * wide, wide)
+    content = GgxSum(BLACK, (GgxLobe(*widths, (0.9, 0.6, 0.3), WHITE),))
+    np.testing.assert_allclose(
+        model.eval(*draw_pairs()), content.to_model().eval(*draw_pairs()), rtol=1e-5
+    )
+    formula = webgl.predict(content, measure_white(page, write, content), *draw_pairs())
+    document = oracle.read(done.paths[0].read_text(encoding="utf-8"))
+    measured = webgl.measure(page, document, *draw_pairs(0.7), 0.7)
+    np.testing.assert_allclose(measured, formula, rtol=1e-4)
 
 
 DAMAGES = {

@@ -22,6 +22,18 @@ def test_the_network_is_that_of_materialx(name, tmp_path):
     assert materialx_oracle.list_network(network) == materialx_oracle.list_network(told)
 
 
+def test_openpbrs_network_is_that_of_materialx(tmp_path):
+    brushed = {"base_metalness": 0.5, "specular_roughness_anisotropy": -0.5}
+    model = bk.models()["openpbr"](base_color=[0.5, 0.1, 0.05], **brushed)
+    usd, mtlx = (
+        bk.export(model, target, tmp_path / f"größe 1.{suffix}").paths[0]
+        for target, suffix in (("usd", "usda"), ("materialx", "mtlx"))
+    )
+    network = usd_oracle.read_network(usd_oracle.open_stage(usd))
+    told = materialx_oracle.read(mtlx.read_text(encoding="utf-8"))
+    assert materialx_oracle.list_network(network) == materialx_oracle.list_network(told)
+
+
 def test_programs_without_materialx_get_a_preview(tmp_path):
     file = bk.export(make_fit("brushed"), "usd", tmp_path / "größe 1.usda").paths[0]
     stage = usd_oracle.open_stage(file)

@@ -1,4 +1,4 @@
-"""The network of MaterialX's nodes that draws a `GgxSum`; `materialx` and `usd` write it."""
+"""The network of MaterialX's nodes for a `GgxSum` or `openpbr`; `materialx` and `usd` write it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,30 @@ from dataclasses import dataclass
 
 from brdfkit.exporting.filling import write_number, write_numbers
 from brdfkit.exporting.ggx_sum import GgxLobe, GgxSum
+from brdfkit.exporting.openpbr import hold_openpbr, is_turned, to_inputs
+from brdfkit.exporting.target import Held, hold_ggx_sum
+from brdfkit.model import Model
 
 VERSION = "1.39"  # of MaterialX
 
-# What a file says about viewers that draw with MaterialX's GLSL. The figures are medians over
-# pairs of directions, measured in tests/oracles
+# What MaterialX can hold, in words, by the columns of the table of targets
+HOLDS = {
+    "diffuse": "Lambert, `openpbr`",
+    "highlights": "GGX, any number, any colour",
+    "anisotropy": "yes",
+    "else": "coat, fuzz of `openpbr`",
+}
+
+# What a file says about viewers that draw with MaterialX's GLSL. The figures are those of
+# tests/oracles, over pairs of directions: the median, and the largest
 NOTE = (
     "MaterialX's OSL draws exactly this. Its GLSL adds light that facets scatter several times",
     "(a metal of alpha 0.2 is 6 % brighter) and shadows by the mean of both widths.",
+)
+NOTE_OF_OPENPBR = (
+    "MaterialX's GLSL adds light that facets scatter several times (a metal of alpha 0.16: 1 %).",
+    "It draws a rough diffuse base up to twice as bright where light and viewer are more than 90",
+    "degrees apart.",
 )
 
 
@@ -21,7 +37,8 @@ NOTE = (
 class Input:
     """A value of a node, as text, or the name of the node that it is connected with.
 
-    `type` is MaterialX's: "float", "vector2", "color3" or "string" of values, "BSDF" of nodes.
+    `type` is MaterialX's: "float", "vector2", "color3" or "string" of values, "BSDF" or "vector3"
+    of nodes.
     """
 
     type: str
@@ -31,7 +48,7 @@ class Input:
     @property
     def is_node(self) -> bool:
         """Whether the input is connected with a node."""
-        return self.type == "BSDF"
+        return self.type in ("BSDF", "vector3")
 
 
 @dataclass(frozen=True)
@@ -44,8 +61,42 @@ class Node:
     type: str = "BSDF"
 
 
-def make_network(content: GgxSum) -> list[Node]:
-    """Return the nodes, each after those that it needs; the last one is the surface shader.
+def hold(model: Model) -> Held | None:
+    """Return what MaterialX draws of a model; None for models of other forms."""
+    return hold_openpbr(model) or hold_ggx_sum(model)
+
+
+def describe_viewers(content: GgxSum | Model) -> tuple[str, ...]:
+    """Return lines of the comment: how viewers draw that use MaterialX's GLSL."""
+    return NOTE_OF_OPENPBR if isinstance(content, Model) else NOTE
+
+
+def make_network(content: GgxSum | Model) -> list[Node]:
+    """Return the nodes, each after those that it needs; the last one is the surface shader."""
+    if isinstance(content, Model):
+        return _make_openpbr(content)
+    return _make_sum(content)
+
+
+def _make_openpbr(model: Model) -> list[Node]:
+    """Return OpenPBR's node, and one for the tangent if the highlight is wide along y."""
+    inputs = [
+        Input("color3", name, write_numbers(value))
+        if isinstance(value, list)
+        else Input("float", name, write_number(value))
+        for name, value in to_inputs(model).items()
+    ]
+    nodes = []
+    if is_turned(model):
+        nodes.append(
+            Node("bitangent", "bitangent", (Input("string", "space", "world"),), "vector3")
+        )
+        inputs.append(Input("vector3", "geometry_tangent", "bitangent"))
+    return [*nodes, Node("open_pbr_surface", "surface", tuple(inputs), "surfaceshader")]
+
+
+def _make_sum(content: GgxSum) -> list[Node]:
+    """Return the nodes of a sum.
 
     Node `generalized_schlick_bsdf` has the form of a highlight, F = k₀ + (k₉₀ - k₀) (1 - V·H)⁵, for
     any k₀ and k₉₀; its `roughness` is (α_u, α_v) itself.

@@ -1,8 +1,8 @@
 """USD: a ball with a material, whose MaterialX network is that of the target `materialx`.
 
 Renderers that do not know MaterialX draw a UsdPreviewSurface instead: the diffuse term and the
-brightest highlight, made isotropic, in colours to 1. For all others holds what `materialx` says.
-x is the primvar `tangents`, which follows u.
+brightest highlight of a sum, made isotropic, in colours to 1, and what it has of `openpbr`. For all
+others holds what `materialx` says. x is the primvar `tangents`, which follows u.
 """
 
 from pathlib import Path
@@ -14,11 +14,18 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.exporting.ball_mesh import make_ball
 from brdfkit.exporting.filling import to_identifier, write_template
 from brdfkit.exporting.ggx_sum import BLACK, GgxLobe, GgxSum
-from brdfkit.exporting.network import NOTE, VERSION, Node, make_network
-from brdfkit.exporting.target import Held, Target, hold_ggx_sum
+from brdfkit.exporting.network import HOLDS, VERSION, Node, describe_viewers, hold, make_network
+from brdfkit.exporting.openpbr import to_inputs
+from brdfkit.exporting.target import Held, Target
+from brdfkit.model import Model
 
 # Types of inputs, and forms of their values, by MaterialX's types
-TYPES = {"color3": "color3f", "vector2": "float2", "BSDF": "token"}
+TYPES = {"color3": "color3f", "vector2": "float2", "vector3": "float3", "BSDF": "token"}
+SUFFIXED = {  # names of nodes' definitions, where they are more than the category
+    "add": "add_bsdf",
+    "bitangent": "bitangent_vector3",
+    "open_pbr_surface": "open_pbr_surface_surfaceshader",
+}
 FORMS = {"color3": " = ({})", "vector2": " = ({})", "string": ' = "{}"'}
 
 
@@ -39,7 +46,7 @@ def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
         uv=_write_rows(ball.uv),
         triangles=", ".join(map(str, ball.triangles.ravel())),
         triangle_count=len(ball.triangles),
-        comment=[*comment, *NOTE],
+        comment=[*comment, *describe_viewers(held.content)],
     )
     return [path]
 
@@ -51,17 +58,32 @@ def _to_shader(node: Node, material: str) -> dict[str, Any]:
         connection = f".connect = <{material}/{entry.text}.outputs:out>"
         form = connection if entry.is_node else FORMS.get(entry.type, " = {}").format(entry.text)
         lines.append(f"{TYPES.get(entry.type, entry.type)} inputs:{entry.name}{form}")
-    kind = "add_bsdf" if node.kind == "add" else node.kind
-    return {"name": node.name, "id": f"ND_{kind}", "inputs": lines}
+    return {
+        "name": node.name,
+        "id": f"ND_{SUFFIXED.get(node.kind, node.kind)}",
+        "type": TYPES.get(node.type, "token"),
+        "inputs": lines,
+    }
 
 
-def _make_preview(content: GgxSum) -> dict[str, Any]:
-    """Return the values of the preview surface."""
+def _make_preview(content: GgxSum | Model) -> dict[str, Any]:
+    """Return the values of the preview surface, by the declarations of its inputs."""
+    if isinstance(content, Model):
+        values = to_inputs(content)
+        return {
+            "color3f inputs:diffuseColor": values["base_color"],
+            "float inputs:metallic": values["base_metalness"],
+            "float inputs:roughness": values["specular_roughness"],
+            "float inputs:ior": values["specular_ior"],
+            "float inputs:clearcoat": values["coat_weight"],
+            "float inputs:clearcoatRoughness": values["coat_roughness"],
+        }
     brightest = max(content.lobes, key=lambda j: sum(j.f0), default=GgxLobe(1, 1, BLACK, BLACK))
     return {
-        "diffuse": np.minimum(content.diffuse, 1),
-        "specular": np.minimum(brightest.f0, 1),
-        "roughness": min((brightest.alpha_u * brightest.alpha_v) ** 0.25, 1),
+        "color3f inputs:diffuseColor": np.minimum(content.diffuse, 1).tolist(),
+        "float inputs:roughness": min((brightest.alpha_u * brightest.alpha_v) ** 0.25, 1),
+        "color3f inputs:specularColor": np.minimum(brightest.f0, 1).tolist(),
+        "int inputs:useSpecularWorkflow": 1,
     }
 
 
@@ -76,12 +98,7 @@ TARGET = Target(
     name="usd",
     title="USD: a ball, with MaterialX's nodes and a preview",
     suffix=".usda",
-    holds={
-        "diffuse": "Lambert",
-        "highlights": "GGX, any number, any colour",
-        "anisotropy": "yes",
-        "else": "nothing",
-    },
-    hold=hold_ggx_sum,
+    holds=HOLDS,
+    hold=hold,
     write=write,
 )
