@@ -68,6 +68,20 @@ def test_fuzz_is_a_transformed_cosine_of_its_albedo():
 
 
 @pytest.mark.quick
+def test_forms_of_gltf_agree_where_both_hold_a_material():
+    """A metal, and a plastic of the full `specular`."""
+    white, coloured = (labels.model(f"gltf:highlights={h}") for h in ("white", "coloured"))
+    shared = {"roughness": 0.3, "anisotropy": 0.4, "clearcoat": 0.5, "clearcoat_roughness": 0.2}
+    colour, pairs = np.array([0.7, 0.4, 0.1]), draw_direction_pairs(500, 2)
+    for plastic in (0.0, 1.0):
+        one = white(base_color=colour, metallic=1 - plastic, ior=1.5, **shared)
+        f0 = plastic * 0.04 + (1 - plastic) * colour
+        colours = {"diffuse_color": plastic * 0.96 * colour, "specular_color": f0}
+        other = coloured(specular=1.0, **colours, **shared)
+        np.testing.assert_allclose(one.eval(*pairs), other.eval(*pairs), rtol=1e-12)
+
+
+@pytest.mark.quick
 def test_bounded_weights_are_those_of_bounded_least_squares():
     """Of a material that is brighter than the base colour may be, and redder than the highlight."""
     model = labels.model("disney+ward")
