@@ -24,7 +24,7 @@ def make_comment(thing: Fit | Model, held: Held, loss: Loss, command: str) -> li
         widths = f"alpha_u = {lobe.alpha_u:.6g}, alpha_v = {lobe.alpha_v:.6g}"
         lines.append(f"Highlight {number}: GGX, {widths} (along x, the tangent, and y)")
     lost = f"Lost: {'; '.join(held.changes)} ({loss})"
-    lines.append("Nothing was lost." if loss.is_zero else lost)
+    lines.append(lost if held.changes else "Nothing was lost.")
     return [*map(to_plain_line, lines), to_plain_line(f"Made by: {command}")]
 
 

@@ -49,8 +49,8 @@ class Export:
     changes: tuple[str, ...]
 
     def __str__(self) -> str:
-        loss = Loss(self.log_error, self.delta_e)
-        lost = "nothing lost" if loss.is_zero else f"{'; '.join(self.changes)}: {loss}"
+        lost = f"{'; '.join(self.changes)}: {Loss(self.log_error, self.delta_e)}"
+        lost = lost if self.changes else "nothing lost"
         return f"{', '.join(map(str, self.paths))} ({lost})"
 
 

@@ -42,11 +42,6 @@ class Loss:
     log_error: float
     delta_e: float
 
-    @property
-    def is_zero(self) -> bool:
-        """Whether both materials are equal, but for rounding."""
-        return self.log_error < 1e-6 and self.delta_e < 1e-3
-
     def __str__(self) -> str:
         return f"log error {self.log_error:.2g}, mean ΔE {self.delta_e:.2g}"
 

@@ -62,9 +62,10 @@ class Target:
                 "another name."
             )
         if path.suffix.lower() != self.suffix:
+            stem = path.stem or "material"
             raise BrdfkitError(
                 f"{path}: a material for {self.name} is written as {self.suffix}; choose "
-                f"{path.with_suffix(self.suffix).name}."
+                f"{stem}{self.suffix}."
             )
         return path
 

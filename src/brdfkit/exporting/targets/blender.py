@@ -20,11 +20,13 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.files import require_writable
 from brdfkit.exporting.filling import write_bytes, write_template
 from brdfkit.exporting.ggx_sum import GgxLobe, GgxSum, to_ggx_sum
 from brdfkit.exporting.target import Held, Target, hold_nearest_sum
 from brdfkit.model import Model
 
+BLEND = ".blend"
 LARGEST_RATIO = 10.0  # of the widths of a Metallic
 LEAST_WEIGHT = 1e-5  # Cycles leaves out what is darker
 
@@ -71,6 +73,9 @@ def _limit_ratio(lobe: GgxLobe) -> GgxLobe:
 
 def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
     """Write the program, and where Blender is at hand, the .blend that it makes."""
+    blender = _find_blender()
+    if blender:  # if there is another .blend of this name, nothing is written
+        require_writable(path.with_suffix(BLEND))
     write_template(
         "blender.py.jinja",
         path,
@@ -79,7 +84,7 @@ def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
         lobes=[_to_nodes(lobe) for lobe in held.content.lobes],
         comment=comment,
     )
-    return [path, *_save_blend(path)]
+    return [path, *_save_blend(path, blender)]
 
 
 def _find_blender() -> list[str]:
@@ -91,12 +96,11 @@ def _find_blender() -> list[str]:
     return [blender, "--background", "--python"] if blender else []
 
 
-def _save_blend(program: Path) -> list[Path]:
+def _save_blend(program: Path, blender: list[str]) -> list[Path]:
     """Run the program in Blender, if it is at hand; return the .blend that it saved beside itself.
 
     The program alone is enough, so a failure is only a warning.
     """
-    blender = _find_blender()
     if not blender:
         return []
     with TemporaryDirectory(prefix="brdfkit-") as folder:
@@ -104,7 +108,7 @@ def _save_blend(program: Path) -> list[Path]:
         words = [*blender, str(program), "--", str(made)]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         if made.is_file():
-            return [write_bytes(program.with_suffix(".blend"), made.read_bytes())]
+            return [write_bytes(program.with_suffix(BLEND), made.read_bytes())]
     reason = "".join((done.stderr.strip() or done.stdout.strip()).splitlines()[-1:])
     warnings.warn(
         f"{program} is written, but Blender made no .blend of it ({reason}); run it in Blender's "

@@ -43,7 +43,9 @@ def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
     """Write the scene file with the material, and the table beside it."""
     files = [path]
     if isinstance(held.content, bytes):
-        files.append(write_bytes(path.with_suffix(BSDF), held.content))
+        # In a scene file $ begins a parameter's name
+        table = path.with_name(path.stem.replace("$", "_") + BSDF)
+        files.append(write_bytes(table, held.content))
         kind, entries = "measured", [("string", "filename", files[1].name)]
     else:
         kind, entries = held.content
