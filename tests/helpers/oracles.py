@@ -6,12 +6,14 @@ returns values (n, 3) in sr⁻¹; it skips where its program is not at hand.
 
 import runpy
 import shutil
+from contextlib import contextmanager
 
 import blender
 import numpy as np
 import openmaterial
 import pbrt_rules
 import radiance
+import webgl
 
 
 def evaluate_in_blender(paths, wi, wo):
@@ -78,20 +80,33 @@ def evaluate_by_usd(paths, wi, wo):
     return materialx_oracle.measure_in_cycles(network, wi, wo)
 
 
-def evaluate_in_three(paths, wi, wo):
-    """three.js draws a plane under a light in Chromium, by glTF's own formula."""
-    import gltf_oracle
+@contextmanager
+def open_browser():
+    """Start Chromium, and end it after the block."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=shutil.which("chromium"), args=["--no-sandbox"]
-        )
+        chromium = shutil.which("chromium")
+        yield playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+
+
+def evaluate_in_three(paths, wi, wo):
+    """three.js draws a plane under a light in Chromium, by glTF's own formula."""
+    import gltf_oracle
+
+    with open_browser() as browser:
         return gltf_oracle.measure(browser, paths[0], wi, wo)
+
+
+def evaluate_by_webgl(paths, wi, wo):
+    """Chromium runs the shader."""
+    with open_browser() as browser:
+        return webgl.evaluate(browser, paths[0].read_text(encoding="utf-8"), wi, wo)
 
 
 ORACLES = {
     "blender": evaluate_in_blender,
+    "glsl": evaluate_by_webgl,
     "gltf": evaluate_in_three,
     "materialx": evaluate_by_materialx,
     "mitsuba": evaluate_in_mitsuba,
