@@ -16,7 +16,11 @@ MENDS = {"mirror_azimuth", "divide_by_cos"}
 TONE = {"curve", "exposure", "by"}
 PLURALS = {"bound": "bounds"}
 COMMANDS = {
-    "fit": ([bk.fit, bk.sweep, bk.render], {"files", "names", "albedo_at_most", "rendered", "up"}),
+    "fit": (
+        [bk.fit, bk.sweep, bk.render],
+        {"files", "names", "albedo_at_most", "exportable", "rendered", "up"},
+    ),
+    "export": ([bk.export], {"thing", "values"}),
     "report": ([bk.fit, bk.report], {"files", "names", "albedo_at_most", "up"}),
     "render": (
         [bk.render, bk.render_volume, bk.preview, render_orbit, bk.volumes.load],

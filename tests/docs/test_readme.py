@@ -70,7 +70,7 @@ def run(line):
 def wishes():
     """(command, Python) of each row of the README's map."""
     rows = re.findall(r"^\| (?!I want|---).*? \| `(.*?)` \| `(.*)` \|$", text("README.md"), re.M)
-    assert len(rows) == 9
+    assert len(rows) == 10
     return rows
 
 
@@ -98,7 +98,7 @@ def test_the_wishes_run_on_the_command_line(here):
     assert {"car_paint", "plaster", "red_plastic"} == named & set(catalogue.list_materials())
     for command, _ in wishes():
         run(re.sub(r"\b(car_paint|plaster|red_plastic)\b(?!\.)", "copper.astm", command))
-    written = {"car_paint.png", "fits/render.png", "paint.binary", "smoke.png", "ggx+ggx.png"}
+    written = {"car_paint.png", "fits/render.png", "paint.binary", "smoke.png", "ggx+ggx.png", "ggx+ggx.py"}
     assert written <= {str(file.relative_to(here)) for file in here.rglob("*")}
 
 
@@ -107,7 +107,7 @@ def test_the_wishes_run_in_python(here):
     exec(shortened(code_blocks()[0]), names)
     for _, code in wishes():
         exec(shortened(code), names)
-    written = {"paint.bsdf", "paint.exr", "paint.html", "smoke.png"}
+    written = {"paint.bsdf", "paint.exr", "paint.html", "paint.py", "smoke.png"}
     assert written <= {file.name for file in here.iterdir()}
 
 
