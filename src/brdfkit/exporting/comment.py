@@ -19,7 +19,9 @@ def make_comment(thing: Fit | Model, held: Held, loss: Loss, command: str) -> li
     lines = [f"{_describe_source(thing)}, exported by brdfkit {__version__}"]
     if isinstance(thing, Fit) and (licence := find_licence(thing.data)):
         lines.append(f"{LICENCE}{licence}")
-    content = to_ggx_sum(held.drawn) if isinstance(held.drawn, Model) else None
+    # A table has the widths of what it was made of
+    shown = held.content if isinstance(held.content, Model) else held.drawn
+    content = to_ggx_sum(shown if isinstance(shown, Model) else thing.rgb)
     for number, lobe in enumerate(content.lobes if content else (), 1):
         widths = f"alpha_u = {lobe.alpha_u:.6g}, alpha_v = {lobe.alpha_v:.6g}"
         lines.append(f"Highlight {number}: GGX, {widths} (along x, the tangent, and y)")

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import shlex
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_writable
 from brdfkit.exporting.comment import make_comment
 from brdfkit.exporting.hold import hold
-from brdfkit.exporting.loss import Loss
+from brdfkit.exporting.loss import Drawable, Loss
+from brdfkit.exporting.target import Target
 from brdfkit.exporting.targets import find_target
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import MaterialLike, to_material
@@ -30,8 +31,8 @@ class Export:
         The files that were written, the main one first.
     target : str
         Name of the target.
-    drawn : Material
-        What the target draws: a model, or a table that evaluates like one.
+    drawn : Model, Measured or another object with ``eval``
+        What the target draws. `plot` takes all of these.
     log_error : float
         RMS difference of ln(f cosθ_i cosθ_o + 0.001) between the fit and what the target draws,
         over random pairs of directions to 80°: 0.1 is about 10 %.
@@ -43,7 +44,7 @@ class Export:
 
     paths: tuple[Path, ...]
     target: str
-    drawn: object
+    drawn: Drawable = field(repr=False)  # tables are long
     log_error: float
     delta_e: float
     changes: tuple[str, ...]
@@ -78,7 +79,7 @@ def export(
     accept_loss : bool, default False
         Whether to write a file whose ball differs visibly, by a mean ΔE2000 above 2.
     command : str, optional
-        The command that repeats the export, for the comment in the file.
+        The command that repeats the export, for the comment in the file. Default: this call.
 
     Returns
     -------
@@ -104,13 +105,30 @@ def export(
     if loss.delta_e > TOLERANCE and not accept_loss:
         raise BrdfkitError(
             f"{thing.name}: {aim.name} would draw it with a mean ΔE of {loss.delta_e:.1f} "
-            f"({'; '.join(held.changes)}); choose a model that it holds, or accept the loss "
+            f"({'; '.join(held.changes)}); {_describe_remedy(aim)}, or accept the loss "
             "(--accept-loss, accept_loss=True)."
         )
-    command = command or shlex.join(["brdfkit", "export", thing.name, aim.name, "-o", path.name])
+    command = command or _describe_call(fit, aim, path, accept_loss)
     files = aim.write(held, path, make_comment(thing, held, loss, command))
     numbers = loss.log_error, loss.delta_e
     return Export(tuple(files), aim.name, held.drawn, *numbers, held.changes)
+
+
+def _describe_remedy(target: Target) -> str:
+    """Return in words how an export loses less."""
+    if target.any_form:
+        return "choose another target"
+    return f"fit a model that it holds (-m best --exportable {target.name})"
+
+
+def _describe_call(fit: MaterialLike, target: Target, path: Path, accept_loss: bool) -> str:
+    """Return the command that repeats an export, or in Python the call."""
+    if isinstance(fit, str | Path):
+        words = ["brdfkit", "export", str(fit), target.name, "-o", str(path)]
+        return shlex.join([*words, *["--accept-loss"] * accept_loss])
+    kind = "model" if isinstance(fit, Model) else "fit"
+    accepted = ", accept_loss=True" * accept_loss
+    return f"bk.export({kind}, {target.name!r}, {str(path)!r}{accepted})"
 
 
 def _to_fit_or_model(thing: MaterialLike) -> Fit | Model:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfkit.core.array_types import FloatArray
+from brdfkit.core.colours import compute_rgb_weights
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.exporting.loss import Loss, measure_loss
+from brdfkit.exporting.loss import Drawable, Loss, compare_balls, measure_loss
 from brdfkit.exporting.target import Held, Target
 from brdfkit.fitting.fit import fit
 from brdfkit.fitting.ranking.ranking import list_default_models
@@ -22,45 +27,54 @@ LOSS = "picture"  # a ball is what the loss of an export is told by
 
 def hold(thing: Fit | Model, target: Target) -> tuple[Held, Loss]:
     """Return what a target draws of a fit or a model, and how far it is from it."""
-    model = thing.rgb
-    if target.spectral:
-        changes: tuple[str, ...] = ()
-        held = target.hold(thing.model if isinstance(thing, Fit) else thing)
-    else:
-        changes = _list_changes_of_colour(thing)
-        held = target.hold(model)
+    own, model = thing.model if isinstance(thing, Fit) else thing, thing.rgb
+    reference: Drawable = model
+    if own.wavelengths:
+        reference = _InColours(own)
+    changes: tuple[str, ...] = ()
+    if own.wavelengths and not target.spectral:
+        changes = (f"{len(own.wavelengths)} wavelengths became linear sRGB",)
+    held = target.hold(own if target.spectral else model)
     if held is None:
-        held, loss = refit(model, target)
-        label = held.drawn.name
-        changes = (*changes, f"{model.label()} refitted as {label}")
-    else:
-        loss = measure_loss(model, held.drawn)
-    return replace(held, changes=(*changes, *held.changes)), loss
+        held = refit(model, target)
+        changes = (*changes, f"{model.label()} refitted as {held.drawn.name}")
+    return replace(held, changes=(*changes, *held.changes)), measure_loss(reference, held.drawn)
 
 
-def _list_changes_of_colour(thing: Fit | Model) -> tuple[str, ...]:
-    """Return in words what the conversion of a spectral model to linear sRGB drops."""
-    count = len(thing.wavelengths)
-    return (f"{count} wavelengths became linear sRGB",) if count else ()
+@dataclass(frozen=True)
+class _InColours:
+    """A spectral model whose values are the colours of its spectra in linear sRGB.
+
+    The property `rgb` of models clips colours of weights outside sRGB; these are as they are.
+    """
+
+    model: Model
+
+    @property
+    def name(self) -> str:
+        """The name of the model."""
+        return self.model.name
+
+    def eval(self, wi: FloatArray, wo: FloatArray) -> NDArray[np.float64]:
+        """Return the BRDF [sr⁻¹] (n, 3) for directions to light and viewer, (n, 3) each."""
+        weights = compute_rgb_weights(self.model.wavelengths, self.name)
+        return np.asarray(self.model.eval(wi, wo) @ weights, float)
 
 
-def refit(model: Model, target: Target) -> tuple[Held, Loss]:
+def refit(model: Model, target: Target) -> Held:
     """Return what a target draws that is nearest to a model, of the forms that it holds.
 
     The target's candidates are fitted to the model's values at the cells of a table; the one whose
     ball looks most alike is taken.
     """
     data = sample_on_grid(model)
-    best: tuple[Held, Loss] | None = None
+    tried = []
     for label in target.candidates:
         held = target.hold(fit(data, label, loss=LOSS).rgb)
         if held is None:
             raise BrdfkitError(f"{target.name} cannot hold its own candidate {label}.")
-        loss = measure_loss(model, held.drawn)
-        if best is None or loss.delta_e < best[1].delta_e:
-            best = held, loss
-    assert best is not None, "every target has a candidate"
-    return best
+        tried.append(held)
+    return min(tried, key=lambda held: compare_balls(model, held.drawn))
 
 
 def sample_on_grid(model: Model) -> Measured:
@@ -71,7 +85,9 @@ def sample_on_grid(model: Model) -> Measured:
 def list_held_models(target: Target) -> list[str]:
     """Return the labels of those models and sums, of all that `rank` compares, that a target holds.
 
-    A model counts if the target holds it with its default values, without changes.
+    These are the models that are not refitted: a table counts, too.
     """
-    held = {label: target.hold(labels.model(label)()) for label in list_default_models()}
-    return [label for label, one in held.items() if one and not one.changes]
+    known = list_default_models()
+    if target.any_form:
+        return known
+    return [label for label in known if target.hold(labels.model(label)()) is not None]

@@ -43,7 +43,8 @@ class Loss:
     delta_e: float
 
     def __str__(self) -> str:
-        return f"log error {self.log_error:.2g}, mean ΔE {self.delta_e:.2g}"
+        log_error, delta_e = (round(value, 6) for value in (self.log_error, self.delta_e))
+        return f"log error {log_error:.2g}, mean ΔE {delta_e:.2g}"
 
 
 def measure_loss(material: Drawable, drawn: Drawable) -> Loss:

@@ -32,5 +32,5 @@ def hold_bsdf(model: Model, material: Model | Spectral, *, whole_circle: bool = 
     table = encode_brdf(material.eval, SIZES, whole_circle=whole_circle)
     rgl.write_table(material, table, stream)
     content = stream.getvalue()
-    drawn = rgl.read(Source(Path(f"{model.type_name()}{BSDF}"), None, content))
+    drawn = rgl.read(Source(Path(f"table of {model.label()}{BSDF}"), None, content))
     return Held(drawn.rgb, content, ("interpolated in a table",))

@@ -40,7 +40,9 @@ class Target:
     returns what the target draws of a model in linear sRGB, or None if it cannot hold the model's
     form; `write`: function that writes what `hold` returned to a path, with a comment of several
     lines, and returns the files; `candidates`: labels of models to fit to other materials;
-    `spectral`: whether `hold` takes models whose weights are spectra, as they are.
+    `spectral`: whether `hold` takes models whose weights are spectra, as they are; `any_form`:
+    whether it holds models of any form, for example in a table; `ending`: what the default name of
+    its file has at the end, if another target has the same suffix.
     """
 
     name: str
@@ -51,6 +53,12 @@ class Target:
     write: Callable[[Held, Path, list[str]], list[Path]]
     candidates: tuple[str, ...] = GGX_SUMS
     spectral: bool = False
+    any_form: bool = False
+    ending: str = ""
+
+    def name_file(self, name: str) -> str:
+        """Return the default name of the file for a material of this name."""
+        return f"{name}{self.ending}{self.suffix}"
 
     def check_path(self, path: str | Path) -> Path:
         """Return the path to write; raise `BrdfkitError` for another suffix, and a wrong name."""

@@ -47,7 +47,7 @@ def export(
         names = ", ".join(list_targets())
         raise BrdfkitError(f"Name a target to export {thing} to: {names}.")
     aim = find_target(target)
-    path = output or Path(f"{Path(thing).stem}{aim.suffix}")
+    path = output or Path(aim.name_file(Path(thing).stem))
     settings = [word for value in values for word in ("--set", value)]
     accepted = ["--accept-loss"] * accept_loss
     words = ["brdfkit", "export", thing, target, "-o", str(path), *settings, *accepted]
@@ -72,6 +72,9 @@ def _print_targets(console: Console) -> None:
     if console.as_json:
         console.print_json({t.name: {"file": t.suffix, **t.holds} for t in targets})
         return
-    rows = [(t.name, t.suffix, t.title, *(t.holds[c] for c in COLUMNS)) for t in targets]
-    console.print_table(["target", "file", "what it is", *COLUMNS], rows)
-    console.output.print("A material: brdfkit export FIT TARGET -o FILE")
+    titles = [(t.name, t.suffix, t.title) for t in targets]
+    console.print_table(["target", "file", "what it is"], titles)
+    # The names of models are code in the documentation
+    rows = [(t.name, *(t.holds[c].replace("`", "") for c in COLUMNS)) for t in targets]
+    console.print_table(["target", *COLUMNS], rows)
+    console.output.print("To export a fit: brdfkit export FIT TARGET -o FILE")

@@ -37,4 +37,5 @@ TARGET = Target(
     },
     hold=hold,
     write=write,
+    any_form=True,
 )

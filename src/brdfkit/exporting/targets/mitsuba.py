@@ -44,7 +44,7 @@ def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
     files = [path]
     if isinstance(held.content, bytes):
         # In a scene file $ begins a parameter's name
-        table = path.with_name(path.stem.replace("$", "_") + BSDF)
+        table = path.with_name(f"{path.stem.replace('$', '_')}_rgb{BSDF}")
         files.append(write_bytes(table, held.content))
         kind, entries = "measured", [("string", "filename", files[1].name)]
     else:
@@ -70,4 +70,5 @@ TARGET = Target(
     },
     hold=hold,
     write=write,
+    any_form=True,
 )

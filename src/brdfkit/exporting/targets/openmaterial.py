@@ -120,4 +120,5 @@ TARGET = Target(
     hold=hold,
     write=write,
     spectral=True,
+    any_form=True,
 )

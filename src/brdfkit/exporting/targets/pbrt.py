@@ -23,7 +23,7 @@ def hold(model: Model) -> Held:
 
 def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
     """Write the material, and the table beside it."""
-    table = write_bytes(path.with_suffix(BSDF), held.content)
+    table = write_bytes(path.with_name(f"{path.stem}_spec{BSDF}"), held.content)
     name = to_identifier(path.stem)
     write_template("material.pbrt.jinja", path, comment=comment, name=name, table=table.name)
     return [path, table]
@@ -42,4 +42,5 @@ TARGET = Target(
     hold=hold,
     spectral=True,
     write=write,
+    any_form=True,
 )

@@ -16,6 +16,7 @@ TARGET = Target(
     name="python",
     title="A function of NumPy arrays",
     suffix=".py",
+    ending="_brdf",
     holds={
         "diffuse": "Lambert",
         "highlights": "GGX, any number, any colour",

@@ -92,6 +92,7 @@ TARGET = Target(
     name="radiance",
     title="Radiance: tensor trees",
     suffix=".xml",
+    ending="_radiance",
     holds={
         "diffuse": "any, in a table",
         "highlights": "any, in a table",
@@ -100,4 +101,5 @@ TARGET = Target(
     },
     hold=hold,
     write=write,
+    any_form=True,
 )
