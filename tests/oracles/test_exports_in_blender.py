@@ -1,6 +1,7 @@
 """Blender draws a turned brush and a ball as `export` said it would, and saves its own file."""
 
 import os
+import subprocess
 
 import blender
 import numpy as np
@@ -41,6 +42,25 @@ def test_blender_saves_its_own_file(tmp_path, monkeypatch):
     done = bk.export(make_fit("coat"), "blender", tmp_path / "größe 1.py")
     assert [path.name for path in done.paths] == ["größe 1.py", "größe 1.blend"]
     assert done.paths[1].read_bytes()[:4] in (b"BLEN", b"(\xb5/\xfd")  # plain or by Zstandard
+
+
+RUN = """
+import bpy, runpy, sys
+other = bpy.data.materials.new("metal")
+for _ in range(2):
+    runpy.run_path(sys.argv[1])
+(made,) = (material for material in bpy.data.materials if "brdfkit" in material)
+assert made != other
+assert ("Tangent" in made.node_tree.nodes) == (sys.argv[2] == "brushed")
+"""
+
+
+@pytest.mark.parametrize("name", ["metal", "brushed"])
+def test_a_second_run_changes_its_own_material_alone(name, tmp_path):
+    program = bk.export(make_fit(name), "blender", tmp_path / "metal.py").paths[0]
+    words = [blender.find_python(), "-c", RUN, str(program), name]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("name", ["metal", "brushed"])

@@ -82,6 +82,7 @@ def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
         name=path.stem,
         diffuse=held.content.diffuse,
         lobes=[_to_nodes(lobe) for lobe in held.content.lobes],
+        is_anisotropic=held.content.is_anisotropic,
         comment=comment,
     )
     return [path, *_save_blend(path, blender)]
