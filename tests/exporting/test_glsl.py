@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 import webgl
-from six_fits import SIX_FITS, make_fit
+from six_fits import make_fit
 
 import brdfkit as bk
 from brdfkit.exporting.loss import draw_direction_pairs
 
 
-@pytest.mark.parametrize("name", SIX_FITS)
+@pytest.mark.parametrize("name", ["metal", "brushed", "coat"])
 def test_a_shader_has_the_values_that_were_told(name, browser, tmp_path):
     done = bk.export(make_fit(name), "glsl", tmp_path / "a.glsl", accept_loss=True)
     wi, wo = draw_direction_pairs(50, seed=1)
