@@ -17,9 +17,12 @@ and tints; with A ≥ 0, `principled` draws the same image: values differ by 0.0
 coats of g above 0.9 by up to 1.4 %, which single precision rounds in Mitsuba. There `base_color`,
 `metallic`, `roughness`, `sheen`, `clearcoat` and `clearcoat_gloss` have these names, `anisotropy`
 is called `anisotropic` and `ior` is `eta`. A negative anisotropy widens the highlight along y;
-Mitsuba has none, and needs the surface turned by 90° instead. White dielectrics reflect more light
-than arrives: 1.04 times as much at normal incidence, and 1.44 times at 85° for q = 1. It suits
-metals, plastics, and coated or cloth-like surfaces of one base colour.
+Mitsuba has none, and needs the surface turned by 90° instead. Blender's Principled differs: it has
+the shadowing of both directions together, a diffuse term of c/π times what the highlight leaves
+over in the direction of view, without retro-reflection, and by default the light that facets
+scatter several times, which is 1 to 15 % of a metal's at q = 0.5. White dielectrics reflect more
+light than arrives: 1.04 times as much at normal incidence, and 1.44 times at 85° for q = 1. It
+suits metals, plastics, and coated or cloth-like surfaces of one base colour.
 """
 
 from dataclasses import dataclass
