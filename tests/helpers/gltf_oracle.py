@@ -54,8 +54,12 @@ DRAW = """async ([file, pairs, tangent]) => {
     });
 }"""
 # three.js adds light that facets scatter several times, and approximates (1 - V·H)⁵ by a power of
-# 2, which differs by 7 % of a plastic's highlight at 50°. glTF's formula has neither
+# 2, which differs by 7 % of a plastic's highlight at 50°. It takes light off the diffuse term by
+# each channel of F, and glTF's formula by the largest
 REPLACED = {
+    "irradiance * diffuseBRDF * ( 1.0 - F )": (
+        "irradiance * diffuseBRDF * ( 1.0 - max( F.r, max( F.g, F.b ) ) )"
+    ),
     "irradiance * specularBRDF * material.multiScatteringCompensation": "irradiance * specularBRDF",
     "exp2( ( - 5.55473 * dotVH - 6.98316 ) * dotVH )": "pow( 1.0 - dotVH, 5.0 )",
 }

@@ -2,8 +2,9 @@
 
 The material is one of the model `gltf`, which other materials are fitted to. Viewers differ from
 the formula: three.js adds light that facets scatter several times (a metal of the roughness 0.4 is
-brighter by 4 % in the median), and approximates (1 - V·H)⁵ (7 % of a plastic's highlight at 50°). x
-is the tangent along u.
+brighter by 4 % in the median), and approximates (1 - V·H)⁵ (7 % of a plastic's highlight at 50°).
+Below a coloured highlight it darkens each channel of the diffuse term by its own F instead of by
+the largest (a green felt whose F₀ is 0.25, 0.5, 0.04: 23 % more blue). x is the tangent along u.
 """
 
 import math
