@@ -21,9 +21,10 @@ base colour times 1 - w b_max with the largest channel of b, and metalness 0. Th
 w b_max - w (1 - b_max) s in place of (1 - w b_max) (1 - w s), 0.5 % of the value at most in fits to
 neural reconstructions of three MERL materials. This form fits better, and metals, too: b may be 1.
 
-[Khronos 2021], appendix B, and the extensions specular, ior, anisotropy and clearcoat; values have
-the names of the file. A negative anisotropy stands for a rotation of 90°. The specification leaves
-room: it prints separable shadowing, where three.js and Khronos' own viewer take this one. It
+[Khronos 2021], appendix B, and the extensions specular, ior, anisotropy and clearcoat. Parameters
+have the names of the file, where `base_color` is called `baseColorFactor` and so on, and
+`anisotropy` `anisotropyStrength`; a negative one stands for a rotation of 90°. The specification
+leaves room: it prints separable shadowing, where three.js and Khronos' own viewer take this one. It
 darkens the base below a coat by 1 - k F_v of the direction of view alone, which is not reciprocal.
 K is the geometric mean of this factor for both directions: the same where they are equally steep,
 and other by 1.14 times where one is at the normal and the other at 75°. White dielectrics reflect

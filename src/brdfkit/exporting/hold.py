@@ -83,11 +83,13 @@ def sample_on_grid(model: Model) -> Measured:
 
 
 def list_held_models(target: Target) -> list[str]:
-    """Return the labels of those models and sums, of all that `rank` compares, that a target holds.
+    """Return the labels of models and sums to rank for a target.
 
-    These are the models that are not refitted: a table counts, too.
+    These are all that `rank` compares and the target holds, which a table does, too; then the forms
+    that other materials are refitted as.
     """
     known = list_default_models()
     if target.any_form:
         return known
-    return [label for label in known if target.hold(labels.model(label)()) is not None]
+    held = [label for label in known if target.hold(labels.model(label)()) is not None]
+    return [*held, *(label for label in target.candidates if label not in held)]
