@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, cast
+
 from brdfkit.core import catalogue
 from brdfkit.core.names import to_printable
 from brdfkit.core.version import __version__
@@ -12,6 +14,7 @@ from brdfkit.model import Model
 from brdfkit.regression import Fit
 
 LICENCE = "Licence of the measured data: "
+BY_ROUGHNESS = "disney", "gltf", "openpbr"  # models with GGX's widths by other parameters
 
 
 def make_comment(thing: Fit | Model, held: Held, loss: Loss, command: str) -> list[str]:
@@ -21,13 +24,23 @@ def make_comment(thing: Fit | Model, held: Held, loss: Loss, command: str) -> li
         lines.append(f"{LICENCE}{licence}")
     # A table has the widths of what it was made of
     shown = held.content if isinstance(held.content, Model) else held.drawn
-    content = to_ggx_sum(shown if isinstance(shown, Model) else thing.rgb)
-    for number, lobe in enumerate(content.lobes if content else (), 1):
-        widths = f"alpha_u = {lobe.alpha_u:.6g}, alpha_v = {lobe.alpha_v:.6g}"
-        lines.append(f"Highlight {number}: GGX, {widths} (along x, the tangent, and y)")
+    widths = _list_widths(shown if isinstance(shown, Model) else thing.rgb)
+    for number, (alpha_u, alpha_v) in enumerate(widths, 1):
+        words = f"alpha_u = {alpha_u:.6g}, alpha_v = {alpha_v:.6g}"
+        lines.append(f"Highlight {number}: GGX, {words} (along x, the tangent, and y)")
     lost = f"Lost: {'; '.join(held.changes)} ({loss})"
     lines.append(lost if held.changes else "Nothing was lost.")
     return [*map(to_plain_line, lines), to_plain_line(f"Made by: {command}")]
+
+
+def _list_widths(model: Model) -> list[tuple[float, float]]:
+    """Return the widths along x and y of each highlight of GGX, apart from coats."""
+    if content := to_ggx_sum(model):
+        return [(lobe.alpha_u, lobe.alpha_v) for lobe in content.lobes]
+    if model.type_name() not in BY_ROUGHNESS:
+        return []
+    slopes = cast(Any, model).slopes()
+    return [(float(slopes.alpha_u), float(slopes.alpha_v))]
 
 
 def to_plain_line(text: str) -> str:
