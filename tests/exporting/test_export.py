@@ -112,21 +112,22 @@ def test_the_same_command_makes_the_same_file(cli, tmp_path):
     before = (tmp_path / "a.glsl").read_bytes()
     assert cli(*words)[0] == 0
     assert (tmp_path / "a.glsl").read_bytes() == before
-    assert b"--set alpha_u=0.3" in before
+    assert b"-p alpha_u=0.3" in before
 
 
 def test_a_visible_loss_is_refused_until_it_is_accepted(cli, tmp_path):
-    words = "export", "eon", "python", "--set", "roughness=1", "-o", "a.py"
+    words = "export", "eon", "materialx", "--set", "roughness=1", "-o", "a.mtlx"
     status, output = cli(*words)
     assert status == 2
     assert re.search(
-        r"mean ΔE of \d+\.\d .*refitted as ggx.*--exportable python.*--accept-loss", output, re.S
+        r"mean ΔE of \d+\.\d .*refitted as ggx.*--exportable materialx.*--accept-loss", output, re.S
     ), output
     assert not list(tmp_path.iterdir())
     status, output = cli(*words, "--accept-loss", "--json")
     assert status == 0
     assert json.loads(output)["delta_e"] > 2
-    assert "--accept-loss" in (tmp_path / "a.py").read_text()
+    made = "Made by: brdfkit export eon materialx -o a.mtlx -p roughness=1 -a\n"
+    assert made in (tmp_path / "a.mtlx").read_text()
 
 
 def test_targets_are_listed(cli, monkeypatch):

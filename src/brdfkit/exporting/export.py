@@ -125,7 +125,7 @@ def _describe_call(fit: MaterialLike, target: Target, path: Path, accept_loss: b
     """Return the command that repeats an export, or in Python the call."""
     if isinstance(fit, str | Path):
         words = ["brdfkit", "export", str(fit), target.name, "-o", str(path)]
-        return shlex.join([*words, *["--accept-loss"] * accept_loss])
+        return shlex.join([*words, *["-a"] * accept_loss])
     kind = "model" if isinstance(fit, Model) else "fit"
     accepted = ", accept_loss=True" * accept_loss
     return f"bk.export({kind}, {target.name!r}, {str(path)!r}{accepted})"

@@ -19,7 +19,10 @@ from brdfkit.core.errors import BrdfkitError
 @output_option("File to write; its suffix is the target's. Default: FIT, and this suffix.")
 @values_option
 @click.option(
-    "--accept-loss", is_flag=True, help="Write the file even if its ball differs visibly (ΔE > 2)."
+    "-a",
+    "--accept-loss",
+    is_flag=True,
+    help="Write the file even if its ball differs visibly (ΔE > 2).",
 )
 @writing_options
 def export(
@@ -48,8 +51,9 @@ def export(
         raise BrdfkitError(f"Name a target to export {thing} to: {names}.")
     aim = find_target(target)
     path = output or Path(aim.name_file(Path(thing).stem))
-    settings = [word for value in values for word in ("--set", value)]
-    accepted = ["--accept-loss"] * accept_loss
+    # Short options, since comments in XML cannot have two hyphens in a row
+    settings = [word for value in values for word in ("-p", value)]
+    accepted = ["-a"] * accept_loss
     words = ["brdfkit", "export", thing, target, "-o", str(path), *settings, *accepted]
     with console.progress(f"export {thing}"):
         material = find_material(thing, values)
