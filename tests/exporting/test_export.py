@@ -106,6 +106,12 @@ def test_materialx_has_openpbr_by_its_names(tmp_path):
     assert inputs["geometry_tangent"].get("nodename") == "a_bitangent"
 
 
+def test_what_is_drawn_can_be_compared_and_plotted(tmp_path):
+    done = bk.export(bk.models()["gltf"](clearcoat=0.5), "gltf", tmp_path / "a.glb")
+    assert list(bk.compare("red_plastic", done.drawn).errors) == ["gltf"]
+    assert bk.plot(done.drawn)
+
+
 def test_the_same_command_makes_the_same_file(cli, tmp_path):
     words = "export", "ggx", "glsl", "--set", "alpha_u=0.3", "-o", "a.glsl"
     cli(*words)

@@ -32,7 +32,7 @@ class Export:
     target : str
         Name of the target.
     drawn : Model, Measured or another object with ``eval``
-        What the target draws. `plot` takes all of these.
+        What the target draws. `plot` and `compare` take all of these.
     log_error : float
         RMS difference of ln(f cosθ_i cosθ_o + 0.001) between the fit and what the target draws,
         over random pairs of directions to 80°: 0.1 is about 10 %.

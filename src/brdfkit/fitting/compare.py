@@ -29,6 +29,7 @@ from brdfkit.regression.losses.named_losses import DEFAULT
 
 # Losses that every table shows, in addition to those that the compared fits minimised
 USUAL_LOSSES = "cosine", "log", "cbrt", "plain"
+NEEDED = "name", "eval"  # attributes of what is compared
 
 
 @dataclass(frozen=True, repr=False)
@@ -141,7 +142,7 @@ def compare(
     >>> print(compare("car_paint", ["ward", fit("car_paint", "ggx")]))    # doctest: +SKIP
     """
     require_material_first("compare(material, fits)", material)
-    data, materials = to_measured(material), to_materials(fits)
+    data, materials = to_measured(material), to_materials(fits, NEEDED)
     samples = select_samples(data, max_angle, spectral=spectral)
     measured_albedo = (data if spectral else data.rgb).albedo
     pixels = make_albedo_pixels(
