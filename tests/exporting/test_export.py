@@ -112,6 +112,18 @@ def test_what_is_drawn_can_be_compared_and_plotted(tmp_path):
     assert bk.plot(done.drawn)
 
 
+def test_materialx_has_highlights_that_are_not_clamped(tmp_path):
+    model = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=[5, 1, 1], f0=0.5)
+    (file,) = bk.export(model, "materialx", tmp_path / "a.mtlx").paths
+    colours = [
+        np.fromstring(given.get("value"), sep=",")
+        for given in ElementTree.parse(file).getroot().iter("input")
+        if given.get("name") == "color0"
+    ]
+    assert np.max(colours) <= 1
+    np.testing.assert_allclose(np.sum(colours, axis=0), [2.5, 0.5, 0.5])
+
+
 def test_the_same_command_makes_the_same_file(cli, tmp_path):
     words = "export", "ggx", "glsl", "--set", "alpha_u=0.3", "-o", "a.glsl"
     cli(*words)

@@ -78,7 +78,7 @@ def to_ggx_sum(model: Model) -> GgxSum | None:
     parts = _list_parts(model)
     if any(name not in ("lambert", "ggx") for name, _ in parts):
         return None
-    diffuse = _to_colour(getattr(model, "diffuse_reflectance", 0.0))
+    diffuse = to_colour(getattr(model, "diffuse_reflectance", 0.0))
     lobes = tuple(_to_lobe(model, prefix) for name, prefix in parts if name == "ggx")
     return GgxSum(diffuse, lobes).without_black_lobes()
 
@@ -95,15 +95,15 @@ def _to_lobe(model: Model, prefix: str) -> GgxLobe:
     """Return the highlight of a `ggx` whose parameters begin with `prefix`."""
     values = {name: getattr(model, prefix + name, None) for name in ("alpha_u", "alpha_v")}
     if prefix + "f0" in model.parameters:
-        f90 = _to_colour(getattr(model, prefix + "specular_reflectance"))
-        f0 = _to_colour(np.multiply(f90, getattr(model, prefix + "f0")))
+        f90 = to_colour(getattr(model, prefix + "specular_reflectance"))
+        f0 = to_colour(np.multiply(f90, getattr(model, prefix + "f0")))
     else:
-        f0 = _to_colour(getattr(model, prefix + "f0_reflectance"))
-        f90 = _to_colour(getattr(model, prefix + "f90_reflectance"))
+        f0 = to_colour(getattr(model, prefix + "f0_reflectance"))
+        f90 = to_colour(getattr(model, prefix + "f90_reflectance"))
     return GgxLobe(**{name: float(value or 0) for name, value in values.items()}, f0=f0, f90=f90)
 
 
-def _to_colour(value: Any) -> Colour:
+def to_colour(value: Any) -> Colour:
     """Return a weight, a number or one for each of R, G, B, as a colour."""
     red, green, blue = np.broadcast_to(np.asarray(value, float), 3).tolist()
     return red, green, blue

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from brdfkit.exporting.filling import write_number, write_numbers
-from brdfkit.exporting.ggx_sum import GgxLobe, GgxSum
+from brdfkit.exporting.ggx_sum import GgxLobe, GgxSum, to_colour
 from brdfkit.exporting.openpbr import hold_openpbr, is_turned, to_inputs
 from brdfkit.exporting.target import Held, hold_ggx_sum
 from brdfkit.model import Model
@@ -99,9 +102,10 @@ def _make_sum(content: GgxSum) -> list[Node]:
     """Return the nodes of a sum.
 
     Node `generalized_schlick_bsdf` has the form of a highlight, F = k₀ + (k₉₀ - k₀) (1 - V·H)⁵, for
-    any k₀ and k₉₀; its `roughness` is (α_u, α_v) itself.
+    any k₀ to 1 and k₉₀; its `roughness` is (α_u, α_v) itself.
     """
-    lobes = [_make_highlight(number, lobe) for number, lobe in enumerate(content.lobes, 1)]
+    parts_of_lobes = (part for lobe in content.lobes for part in _split(lobe))
+    lobes = [_make_highlight(number, part) for number, part in enumerate(parts_of_lobes, 1)]
     diffuse = [_make_diffuse(content)] if any(content.diffuse) or not lobes else []
     parts = diffuse + lobes
     nodes, total = list(parts), parts[0].name
@@ -109,6 +113,13 @@ def _make_sum(content: GgxSum) -> list[Node]:
         both = Input("BSDF", "in1", total), Input("BSDF", "in2", part.name)
         nodes.append(Node("add", total := f"sum_{number}", both))
     return [*nodes, Node("surface", "surface", (Input("BSDF", "bsdf", total),), "surfaceshader")]
+
+
+def _split(lobe: GgxLobe) -> list[GgxLobe]:
+    """Return a highlight as equal ones whose k₀ is at most 1, to which renderers clamp it."""
+    count = max(1, math.ceil(max(lobe.f0)))
+    f0, f90 = (to_colour(np.divide(colour, count)) for colour in (lobe.f0, lobe.f90))
+    return [replace(lobe, f0=f0, f90=f90)] * count
 
 
 def _make_diffuse(content: GgxSum) -> Node:
