@@ -124,6 +124,13 @@ def test_materialx_has_highlights_that_are_not_clamped(tmp_path):
     np.testing.assert_allclose(np.sum(colours, axis=0), [2.5, 0.5, 0.5])
 
 
+def test_blender_has_no_more_nodes_than_cycles_draws(tmp_path):
+    model = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=1000, f0=0.04)
+    done = bk.export(model, "blender", tmp_path / "a.py", accept_loss=True)
+    assert done.changes == ("highlights at grazing angles became greyer, or darker",)
+    assert done.log_error > 0.1
+
+
 def test_the_same_command_makes_the_same_file(cli, tmp_path):
     words = "export", "ggx", "glsl", "--set", "alpha_u=0.3", "-o", "a.glsl"
     cli(*words)

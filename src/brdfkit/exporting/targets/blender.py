@@ -28,6 +28,7 @@ from brdfkit.model import Model
 
 BLEND = ".blend"
 LARGEST_RATIO = 10.0  # of the widths of a Metallic
+LARGEST_WEIGHT = 15.0  # a Metallic for each 1; with more than 64 nodes Cycles draws black
 LEAST_WEIGHT = 1e-5  # Cycles leaves out what is darker
 
 
@@ -40,7 +41,7 @@ def hold(model: Model) -> Held | None:
     for lobe in content.lobes:
         grey = _limit_rise(lobe)
         if grey != lobe:
-            changes.append("the colour of highlights at grazing angles became greyer")
+            changes.append("highlights at grazing angles became greyer, or darker")
         round_ = _limit_ratio(grey)
         if round_ != grey:
             changes.append(f"anisotropy is limited to {LARGEST_RATIO:g}")
@@ -53,7 +54,7 @@ def _limit_rise(lobe: GgxLobe) -> GgxLobe:
     """Return a highlight whose reflectance rises to grazing angles as nodes can have it."""
     f0 = np.array(lobe.f0)
     f90 = np.maximum(lobe.f90, f0)
-    rise = np.minimum(f90 - f0, f90.min())
+    rise = np.minimum(f90 - f0, min(f90.min(), LARGEST_WEIGHT))
     if np.allclose(f0 + rise, lobe.f90, rtol=1e-12, atol=0):
         return lobe
     red, green, blue = (f0 + rise).tolist()
