@@ -21,7 +21,7 @@ TOLERANCES = {
     "openmaterial": 1e-4,
     "osl": 1e-3,
     "pbrt": 1e-4,
-    "python": 1e-12,
+    "python": 1e-7,
     "radiance": 1e-3,
     "usd": 1e-4,
 }

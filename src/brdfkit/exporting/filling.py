@@ -50,12 +50,14 @@ def _make_environment() -> Any:
 
 
 def write_number(value: float) -> str:
-    """Return a number with a decimal point, which C-like languages need, and all its digits.
+    """Return a number with a decimal point, which C-like languages need, and nine digits.
 
-    >>> write_number(1), write_number(0.1)
-    ('1.0', '0.1')
+    These are all digits of single precision, in which renderers compute.
+
+    >>> write_number(1), write_number(0.1 + 0.2), write_number(1e-7)
+    ('1.0', '0.3', '1e-07')
     """
-    return repr(float(value))
+    return repr(float(f"{value:.9g}"))
 
 
 def write_numbers(values: Any) -> str:

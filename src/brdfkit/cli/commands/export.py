@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -16,7 +17,10 @@ from brdfkit.core.errors import BrdfkitError
 @click.command()
 @click.argument("thing", required=False, metavar="[FIT|MODEL]")
 @click.argument("target", required=False, metavar="[TARGET]")
-@output_option("File to write; its suffix is the target's. Default: FIT, and this suffix.")
+@output_option(
+    "File to write; its suffix is the target's. Default: the name of FIT, or of its material where "
+    "FIT is named by its model."
+)
 @values_option
 @click.option(
     "-a",
@@ -50,13 +54,13 @@ def export(
         names = ", ".join(list_targets())
         raise BrdfkitError(f"Name a target to export {thing} to: {names}.")
     aim = find_target(target)
-    path = output or Path(aim.name_file(Path(thing).stem))
+    material = find_material(thing, values)
+    path = output or Path(aim.name_file(_name_material(thing, material)))
     # Short options, since comments in XML cannot have two hyphens in a row
     settings = [word for value in values for word in ("-p", value)]
     accepted = ["-a"] * accept_loss
     words = ["brdfkit", "export", thing, target, "-o", str(path), *settings, *accepted]
     with console.progress(f"export {thing}"):
-        material = find_material(thing, values)
         done = export_material(
             material, target, path, accept_loss=accept_loss, command=shlex.join(words)
         )
@@ -65,6 +69,17 @@ def export(
         console.print_json({"written": done.paths, "target": target, **lost})
     else:
         console.output.print(f"written: {done}")
+
+
+def _name_material(thing: str, material: Any) -> str:
+    """Return the name of a material: of its file, or of the data if the model names the file."""
+    from brdfkit.core.names import to_file_stem, to_fit_path
+    from brdfkit.regression import Fit
+
+    name = Path(thing).name
+    if isinstance(material, Fit) and name == to_fit_path("", material.model.label()).name:
+        return to_file_stem(material.data)
+    return Path(thing).stem
 
 
 def _print_targets(console: Console) -> None:
