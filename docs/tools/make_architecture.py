@@ -22,7 +22,7 @@ LABELS = 2.5  # width of the labels of rows [inches]
 PAPER, INK, LINE = "#f5f1e8", "#2b2b2b", "#8a5a2b"
 GROUPS = {  # labels of rows, by one of the parts in the row
     "cli": "what people type",
-    "inverse": "numbers from pictures; reports",
+    "inverse": "numbers from pictures; reports; exports",
     "checks": "verbs: what people call",
     "materials": "nouns: what people name",
     "regression": "what a fit and what Mitsuba runs",
