@@ -38,13 +38,15 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
-from brdfkit.core.geometry.vectors import cos_theta_d, half_vector
+from brdfkit.core.geometry.vectors import cos_theta_d
 from brdfkit.model import Model, Parameter, anisotropy, option, shape, weight
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, add_lobes
 from brdfkit.model.microfacet import (
     TrowbridgeReitz,
     fifth_power,
     grazing_share,
+    pass_layer,
+    reflect_by_facets,
     reflectance_from_ior,
     schlick,
 )
@@ -100,9 +102,7 @@ class GLTF(Model):
 
     def below_coat(self, wi: JitVector, wo: JitVector) -> JitFloat:
         """Return the share K of the base's light that the coat lets pass."""
-        coat = (1 - self.clearcoat * schlick(COAT_F0, w.z) for w in (wi, wo))
-        entering, leaving = coat
-        return dr.sqrt(dr.maximum(entering * leaving, 1e-12))
+        return pass_layer(*(self.clearcoat * schlick(COAT_F0, w.z) for w in (wi, wo)))
 
     def diffuse_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
         if self.highlights == "coloured":
@@ -162,8 +162,3 @@ class GLTF(Model):
             Lobe(self.dielectric_brdf, facets, dielectric_energy),
             Lobe(self.coat_brdf, coat, lambda wi: self.clearcoat * schlick(COAT_F0, wi.z)),
         )
-
-
-def reflect_by_facets(slopes: TrowbridgeReitz, wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return D G₂ / (4 μ_i μ_o), the BRDF of facets that reflect all light."""
-    return slopes.D(half_vector(wi, wo)) * slopes.G2(wi, wo) / (4 * wi.z * wo.z)

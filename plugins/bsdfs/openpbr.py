@@ -36,7 +36,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
-from brdfkit.core.geometry.vectors import cos_theta_d, half_vector
+from brdfkit.core.geometry.vectors import cos_theta_d
 from brdfkit.model import Model, Parameter, anisotropy, option, shape, weight
 from brdfkit.model.ggx_albedo import schlick_albedo
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, add_lobes
@@ -45,6 +45,8 @@ from brdfkit.model.microfacet import (
     dielectric_reflectance,
     fifth_power,
     grazing_share,
+    pass_layer,
+    reflect_by_facets,
     reflectance_from_ior,
     schlick,
 )
@@ -194,20 +196,10 @@ class OpenPBR(Model):
         )
 
 
-def reflect_by_facets(slopes: TrowbridgeReitz, wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return D G₂ / (4 μ_i μ_o), the BRDF of facets that reflect all light."""
-    return slopes.D(half_vector(wi, wo)) * slopes.G2(wi, wo) / (4 * wi.z * wo.z)
-
-
 def limit_to_one(x: JitFloat) -> JitFloat:
     """Return the smaller one of x and 1, rounded where they are equal, for the sake of fits."""
     eighth = dr.square(dr.square(dr.square(x)))
     return x * dr.rsqrt(dr.sqrt(dr.sqrt(1 + eighth)))
-
-
-def pass_layer(entering: JitFloat, leaving: JitFloat) -> JitFloat:
-    """Return the share of light that a layer lets pass, from its albedos of both directions."""
-    return dr.sqrt(dr.maximum((1 - entering) * (1 - leaving), 1e-12))
 
 
 def fuzz_albedo(cosine: JitFloat, roughness: JitFloat) -> JitFloat:

@@ -12,7 +12,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
-from brdfkit.core.geometry.vectors import cos_theta_d, dot
+from brdfkit.core.geometry.vectors import cos_theta_d, dot, half_vector
 from brdfkit.model.numerics import cosine_power, expm1
 
 
@@ -27,6 +27,14 @@ def schlick(f0: JitFloat, cos_theta: JitFloat) -> JitFloat:
 def grazing_share(wi: JitVector, wo: JitVector) -> JitFloat:
     """Return (1 - V·H)⁵, the share of F₉₀ in the Fresnel reflectance of a facet [Schlick 1994]."""
     return fifth_power(1 - cos_theta_d(wi, wo))
+
+
+def pass_layer(entering: JitFloat, leaving: JitFloat) -> JitFloat:
+    """Return the share of light that a layer lets pass, from its albedos of both directions.
+
+    It is the geometric mean of both shares, which is reciprocal, unlike the share of one direction.
+    """
+    return dr.sqrt(dr.maximum((1 - entering) * (1 - leaving), 1e-12))
 
 
 def reflectance_from_ior(ior: JitFloat) -> JitFloat:
@@ -222,3 +230,8 @@ def _normal_from_slopes(vector: Any, x: JitFloat, y: JitFloat) -> JitVector:
     """Return the unit normal of a facet with the slopes `x` and `y`, of the type `vector`."""
     inverse = dr.rsqrt(1 + x * x + y * y)
     return vector(x * inverse, y * inverse, inverse)
+
+
+def reflect_by_facets(slopes: TrowbridgeReitz, wi: JitVector, wo: JitVector) -> JitFloat:
+    """Return D G₂ / (4 μ_i μ_o), the BRDF of facets that reflect all light."""
+    return slopes.D(half_vector(wi, wo)) * slopes.G2(wi, wo) / (4 * wi.z * wo.z)
