@@ -20,13 +20,14 @@ from PIL import Image, ImageDraw, ImageFont
 import brdfkit as bk
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.exporting.loss import compute_log_error, draw_direction_pairs
+from brdfkit.exporting.loss import compute_log_error
 from brdfkit.exporting.target import COLUMNS
 from brdfkit.exporting.targets import list_targets
 from brdfkit.images.ball import ball as balls
 from brdfkit.images.ball.ball import compute_exposure, draw_ball
 from brdfkit.images.ball.lights import LIGHTS
 from brdfkit.images.ball.normals import VIEW
+from brdfkit.materials.converting import draw_direction_pairs
 
 DOCS = Path(__file__).parents[1]
 PAGE, FIGURES, PICTURE = (DOCS / f"exports.{suffix}" for suffix in ("md", "json", "jpg"))

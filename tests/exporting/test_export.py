@@ -17,9 +17,10 @@ from brdfkit.cli import main
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.exporting.hold import list_held_models
-from brdfkit.exporting.loss import draw_direction_pairs, measure_loss
+from brdfkit.exporting.loss import measure_loss
 from brdfkit.exporting.target import COLUMNS
 from brdfkit.exporting.targets import blender, list_targets
+from brdfkit.materials.converting import draw_direction_pairs
 
 TARGETS = list_targets()
 PAIRS = draw_direction_pairs(200, seed=1)

@@ -6,7 +6,7 @@ import webgl
 from six_fits import make_fit
 
 import brdfkit as bk
-from brdfkit.exporting.loss import draw_direction_pairs
+from brdfkit.materials.converting import draw_direction_pairs
 
 
 @pytest.mark.parametrize("name", ["metal", "brushed", "coat"])

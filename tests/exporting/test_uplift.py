@@ -4,8 +4,8 @@ import numpy as np
 from six_fits import make_fit
 
 from brdfkit.core.colours import compute_rgb_weights
-from brdfkit.exporting.loss import draw_direction_pairs
 from brdfkit.exporting.uplift import WAVELENGTHS, Spectral, compute_primaries
+from brdfkit.materials.converting import draw_direction_pairs
 
 
 def test_spectra_become_their_colours():

@@ -6,8 +6,9 @@ from oracles import ORACLES
 from six_fits import SIX_FITS, make_fit
 
 import brdfkit as bk
-from brdfkit.exporting.loss import compute_log_error, draw_direction_pairs
+from brdfkit.exporting.loss import compute_log_error
 from brdfkit.exporting.targets import find_target
+from brdfkit.materials.converting import draw_direction_pairs
 
 pytestmark = pytest.mark.oracles
 

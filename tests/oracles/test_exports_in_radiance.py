@@ -7,7 +7,7 @@ from six_fits import make_fit
 
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.exporting.loss import draw_direction_pairs
+from brdfkit.materials.converting import draw_direction_pairs
 from brdfkit.model import labels
 
 pytestmark = [pytest.mark.oracles, pytest.mark.usefixtures("radiances_programs")]

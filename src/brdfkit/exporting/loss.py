@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.ball.ball import draw_ball
 from brdfkit.images.errors.colour_difference import ciede2000
+from brdfkit.materials.converting import PAIRS, draw_direction_pairs
 
-# The BRDFs are compared at this number of random pairs of directions, to this angle to the normal
-PAIRS, LARGEST_ANGLE = 4000, np.radians(80)
 FLOOR = 1e-3  # is added to f cosθ_i cosθ_o, as in the loss "log"
 SIDE = 64  # pixels of the ball's picture
 
@@ -71,14 +69,6 @@ def compute_log_error(
     cosines = wi[:, 2:] * wo[:, 2:]
     logs = [np.log(np.maximum(values, 0) * cosines + FLOOR) for values in (first, other)]
     return float(np.sqrt(np.mean((logs[1] - logs[0]) ** 2)))
-
-
-def draw_direction_pairs(count: int, seed: int = 0) -> tuple[FloatArray, FloatArray]:
-    """Draw pairs of directions, uniform in both angles, to 80° from the normal."""
-    random = np.random.default_rng(seed)
-    theta = random.uniform(0, LARGEST_ANGLE, (2, count))
-    wi, wo = from_angles(theta, random.uniform(0, 2 * np.pi, (2, count)))
-    return wi, wo
 
 
 def compare_balls(material: Drawable, drawn: Drawable) -> float:

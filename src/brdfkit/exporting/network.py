@@ -10,18 +10,13 @@ import numpy as np
 from brdfkit.exporting.filling import write_number, write_numbers
 from brdfkit.exporting.ggx_sum import GgxLobe, GgxSum, to_colour
 from brdfkit.exporting.openpbr import hold_openpbr, is_turned, to_inputs
-from brdfkit.exporting.target import Held, hold_ggx_sum
+from brdfkit.exporting.target import GGX_SUM, Held, hold_ggx_sum
 from brdfkit.model import Model
 
 VERSION = "1.39"  # of MaterialX
 
 # What MaterialX can hold, in words, by the columns of the table of targets
-HOLDS = {
-    "diffuse": "Lambert, `openpbr`",
-    "highlights": "GGX, any number, any colour",
-    "anisotropy": "yes",
-    "else": "coat, fuzz of `openpbr`",
-}
+HOLDS = GGX_SUM | {"diffuse": "Lambert, `openpbr`", "else": "coat, fuzz of `openpbr`"}
 
 # What a file says about viewers that draw with MaterialX's GLSL. The figures are those of
 # tests/oracles, over pairs of directions: the median, and the largest

@@ -16,6 +16,14 @@ from brdfkit.model import Model
 ONE = "ggx:fresnel=coloured"
 GGX_SUMS = ONE, f"{ONE}+{ONE}"  # what to fit to materials of other forms than a `GgxSum`
 COLUMNS = "diffuse", "highlights", "anisotropy", "else"  # of the table of targets
+# What targets hold, in words, that hold every `GgxSum`, and that hold a table of any material
+GGX_SUM = {
+    "diffuse": "Lambert",
+    "highlights": "GGX, any number, any colour",
+    "anisotropy": "yes",
+    "else": "nothing",
+}
+TABLE = dict.fromkeys(COLUMNS, "any, in a table") | {"anisotropy": "yes"}
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.extrapolation import describe_file_extrapolation
 from brdfkit.materials.loading import save_and_read
@@ -137,9 +138,7 @@ def compare_interpolations(before: Measured, after: Measured) -> str:
         return ""  # both hold samples, which are interpolated alike and were compared before
     if before.channels != after.channels:
         before, after = before.rgb, after.rgb
-    random = np.random.default_rng(0)
-    theta = random.uniform(0, LARGEST_ANGLE, (2, PAIRS))
-    pairs = from_angles(theta, random.uniform(0, 2 * np.pi, (2, PAIRS)))
+    pairs = draw_direction_pairs(PAIRS)
     old, new = np.broadcast_arrays(before.eval(*pairs), after.eval(*pairs))
     larger = np.maximum(old, new)
     differences = np.divide(np.abs(new - old), larger, out=np.zeros(old.shape), where=larger > 0)
@@ -147,6 +146,14 @@ def compare_interpolations(before: Measured, after: Measured) -> str:
     if most < LEAST_DIFFERENCE:
         return ""
     return f"{median:.1%} in the median, 95 of 100 within {most:.1%}"
+
+
+def draw_direction_pairs(count: int, seed: int = 0) -> tuple[FloatArray, FloatArray]:
+    """Draw pairs of directions (count, 3), uniform in both angles, to 80° from the normal."""
+    random = np.random.default_rng(seed)
+    theta = random.uniform(0, LARGEST_ANGLE, (2, count))
+    wi, wo = from_angles(theta, random.uniform(0, 2 * np.pi, (2, count)))
+    return wi, wo
 
 
 def describe_contents(data: Measured) -> dict[str, str]:

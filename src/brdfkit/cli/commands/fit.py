@@ -116,12 +116,12 @@ def fit(
 
 def _list_exportable_models(target: str | None, names: list[str]) -> list[str] | None:
     """Return the labels of the models to rank for an export, or None for all models."""
+    if target is None:
+        return None
     from brdfkit.cli.rank_output import BEST
     from brdfkit.exporting.hold import list_held_models
     from brdfkit.exporting.targets import find_target
 
-    if target is None:
-        return None
     if BEST not in names:
         raise BrdfkitError("--exportable chooses what -m best ranks; add -m best.")
     return list_held_models(find_target(target))

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from brdfkit.exporting.filling import write_template
-from brdfkit.exporting.target import Held, Target, hold_ggx_sum
+from brdfkit.exporting.target import GGX_SUM, Held, Target, hold_ggx_sum
 
 
 def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
@@ -16,12 +16,7 @@ TARGET = Target(
     name="glsl",
     title="A function of a shader (GLSL ES 3.00, desktop GLSL)",
     suffix=".glsl",
-    holds={
-        "diffuse": "Lambert",
-        "highlights": "GGX, any number, any colour",
-        "anisotropy": "yes",
-        "else": "nothing",
-    },
+    holds=GGX_SUM,
     hold=hold_ggx_sum,
     write=write,
 )

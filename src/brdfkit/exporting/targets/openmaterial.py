@@ -14,7 +14,7 @@ from brdfkit.core.colours import compute_rgb_weights
 from brdfkit.exporting.angle_table import AngleTable, tabulate_angles
 from brdfkit.exporting.comment import LICENCE
 from brdfkit.exporting.filling import to_identifier, write_text
-from brdfkit.exporting.target import Held, Target
+from brdfkit.exporting.target import TABLE, Held, Target
 from brdfkit.exporting.uplift import Spectral
 from brdfkit.materials.formats.rgl.encoding import detect_symmetry
 from brdfkit.model import Model
@@ -111,12 +111,7 @@ TARGET = Target(
     name="openmaterial",
     title="ASAM OpenMATERIAL 3D: a table of spectra",
     suffix=".xomp",
-    holds={
-        "diffuse": "any, in a table",
-        "highlights": "any, in a table of 5°",
-        "anisotropy": "no",
-        "else": "any, in a table",
-    },
+    holds=TABLE | {"highlights": "any, in a table of 5°", "anisotropy": "no"},
     hold=hold,
     write=write,
     spectral=True,

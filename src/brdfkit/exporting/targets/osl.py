@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.exporting.filling import to_identifier, write_template
 from brdfkit.exporting.ggx_sum import GgxLobe
-from brdfkit.exporting.target import Held, Target, hold_ggx_sum
+from brdfkit.exporting.target import GGX_SUM, Held, Target, hold_ggx_sum
 
 # Cycles rounds isotropic highlights below this width, by 1 % of the peak at 0.005. A width along y
 # that differs by this share avoids it
@@ -44,12 +44,7 @@ TARGET = Target(
     name="osl",
     title="Open Shading Language, as Cycles has it",
     suffix=".osl",
-    holds={
-        "diffuse": "Lambert",
-        "highlights": "GGX, any number, any colour",
-        "anisotropy": "yes",
-        "else": "nothing",
-    },
+    holds=GGX_SUM,
     hold=hold_ggx_sum,
     write=write,
 )

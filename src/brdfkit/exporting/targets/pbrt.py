@@ -9,7 +9,7 @@ from pathlib import Path
 
 from brdfkit.exporting.filling import to_identifier, write_bytes, write_template
 from brdfkit.exporting.tables import BSDF, hold_bsdf
-from brdfkit.exporting.target import Held, Target
+from brdfkit.exporting.target import TABLE, Held, Target
 from brdfkit.exporting.uplift import Spectral
 from brdfkit.model import Model
 
@@ -33,12 +33,7 @@ TARGET = Target(
     name="pbrt",
     title="pbrt-v4: a table of spectra",
     suffix=".pbrt",
-    holds={
-        "diffuse": "any, in a table",
-        "highlights": "any, in a table",
-        "anisotropy": "yes",
-        "else": "any, in a table",
-    },
+    holds=TABLE,
     hold=hold,
     spectral=True,
     write=write,

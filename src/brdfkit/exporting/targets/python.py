@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from brdfkit.exporting.filling import write_template
-from brdfkit.exporting.target import Held, Target, hold_ggx_sum
+from brdfkit.exporting.target import GGX_SUM, Held, Target, hold_ggx_sum
 
 
 def write(held: Held, path: Path, comment: list[str]) -> list[Path]:
@@ -17,12 +17,7 @@ TARGET = Target(
     title="A function of NumPy arrays",
     suffix=".py",
     ending="_brdf",
-    holds={
-        "diffuse": "Lambert",
-        "highlights": "GGX, any number, any colour",
-        "anisotropy": "yes",
-        "else": "nothing",
-    },
+    holds=GGX_SUM,
     hold=hold_ggx_sum,
     write=write,
 )

@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.exporting.filling import write_template
 from brdfkit.exporting.loss import measure_log_error
-from brdfkit.exporting.target import Held, Target
+from brdfkit.exporting.target import TABLE, Held, Target
 from brdfkit.exporting.tensor_tree import (
     TensorTree,
     format_tree,
@@ -93,12 +93,7 @@ TARGET = Target(
     title="Radiance: tensor trees",
     suffix=".xml",
     ending="_radiance",
-    holds={
-        "diffuse": "any, in a table",
-        "highlights": "any, in a table",
-        "anisotropy": "yes",
-        "else": "any, in a table",
-    },
+    holds=TABLE,
     hold=hold,
     write=write,
     any_form=True,
