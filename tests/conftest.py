@@ -2,7 +2,6 @@
 
 import itertools
 import os
-import shutil
 import signal
 import sys
 from pathlib import Path
@@ -10,6 +9,7 @@ from tempfile import TemporaryDirectory
 
 import kernel_compilation
 import pytest
+from chromium import open_chromium
 
 import brdfkit as bk
 from brdfkit.core.discovery import plugin_files
@@ -148,15 +148,6 @@ def model(model_name):
 
 @pytest.fixture(scope="module")
 def browser():
-    """Headless Chromium: the system's, or the one that Playwright has installed."""
-    api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-    api.expect.set_options(timeout=30_000)  # the machine may be busy
-    with api.sync_playwright() as playwright:
-        names = "chromium", "chromium-browser", "google-chrome"
-        own = playwright.chromium.executable_path
-        found = next(filter(None, map(shutil.which, names)), own if Path(own).exists() else None)
-        if not found:
-            pytest.skip("there is no Chromium here; install it, or 'playwright install chromium'")
-        launched = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+    """Headless Chromium."""
+    with open_chromium() as launched:
         yield launched
-        launched.close()

@@ -5,8 +5,6 @@ returns values (n, 3) in sr⁻¹; it skips where its program is not at hand.
 """
 
 import runpy
-import shutil
-from contextlib import contextmanager
 
 import blender
 import numpy as np
@@ -14,6 +12,7 @@ import openmaterial
 import pbrt_rules
 import radiance
 import webgl
+from chromium import open_chromium
 
 
 def evaluate_in_blender(paths, wi, wo):
@@ -80,27 +79,17 @@ def evaluate_by_usd(paths, wi, wo):
     return materialx_oracle.measure_in_cycles(network, wi, wo)
 
 
-@contextmanager
-def open_browser():
-    """Start Chromium, and end it after the block."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        chromium = shutil.which("chromium")
-        yield playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-
-
 def evaluate_in_three(paths, wi, wo):
     """three.js draws a plane under a light in Chromium, by glTF's own formula."""
     import gltf_oracle
 
-    with open_browser() as browser:
+    with open_chromium() as browser:
         return gltf_oracle.measure(browser, paths[0], wi, wo)
 
 
 def evaluate_by_webgl(paths, wi, wo):
     """Chromium runs the shader."""
-    with open_browser() as browser:
+    with open_chromium() as browser:
         return webgl.evaluate(browser, paths[0].read_text(encoding="utf-8"), wi, wo)
 
 
