@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -44,8 +44,12 @@ class Lights:
 
     def select(self, lights: IntArray) -> Lights:
         """Return the lights with the given indices."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return Lights(**{name: v if v is None else v[lights] for name, v in values.items()})
+        chosen = {
+            field.name: values[lights]
+            for field in fields(self)
+            if (values := getattr(self, field.name)) is not None
+        }
+        return replace(self, **chosen)
 
     def illuminate(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return unit vectors from points to the lights, and irradiances of surfaces facing them.
