@@ -37,6 +37,21 @@ def require_memory(size: tuple[int, int], pictures: int, where: object = "") -> 
     raise BrdfkitError(f"{where}: {sentence}" if where else sentence[0].upper() + sentence[1:])
 
 
+def require_bytes(needed: int, what: str) -> None:
+    """Raise `BrdfkitError` where `what` needs more memory than is available.
+
+    >>> require_bytes(10**15, "light.exr")
+    Traceback (most recent call last):
+    brdfkit.core.errors.BrdfkitError: light.exr would take 1,000,000 GB of memory, of which ...
+    """
+    available = psutil.virtual_memory().available
+    if needed > available:
+        raise BrdfkitError(
+            f"{what} would take {_to_gigabytes(needed)} GB of memory, of which "
+            f"{_to_gigabytes(available)} GB are available; make them smaller."
+        )
+
+
 def _to_gigabytes(size: float) -> str:
     """Format a number of bytes in gigabytes."""
     return f"{size / 1e9:,.0f}" if size >= 1e10 else f"{size / 1e9:.2g}"

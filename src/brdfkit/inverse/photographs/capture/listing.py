@@ -1,0 +1,47 @@
+"""Defines `Listing`, what the text files of a folder say about the photographs in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from brdfkit.core.array_types import FloatArray
+from brdfkit.inverse.photographs.capture.lights import Lights
+
+
+@dataclass(frozen=True, eq=False)
+class Listing:
+    """The photographs of an object in a folder, with their lights.
+
+    Attributes
+    ----------
+    name : str
+        Name of the object.
+    photographs : tuple of Path
+        The files of the photographs.
+    lights : Lights
+        The light of each photograph.
+    lights_file : Path
+        The file that says where the lights are, for errors and notes.
+    has_intensities : bool
+        Whether that file, or another one, states the intensities of the lights.
+    mask : Path, optional
+        The file of the mask.
+    normals : ndarray, shape (height, width, 3), optional
+        The true normals, where they are known.
+    pixel_size, distance : float, optional
+        See `ObjectCapture`.
+    notes : tuple of str
+        Sentences on what was found so far.
+    """
+
+    name: str
+    photographs: tuple[Path, ...]
+    lights: Lights
+    lights_file: Path
+    has_intensities: bool = False
+    mask: Path | None = None
+    normals: FloatArray | None = None
+    pixel_size: float | None = None
+    distance: float | None = None
+    notes: tuple[str, ...] = ()

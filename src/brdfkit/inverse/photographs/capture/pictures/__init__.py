@@ -1,0 +1,1 @@
+"""Reads photographs of any format as linear values, and masks; a photograph at a time."""

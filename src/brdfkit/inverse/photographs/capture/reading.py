@@ -1,0 +1,159 @@
+"""Reads the photographs of a `Listing` one by one, and keeps the pixels of the object alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.memory import require_bytes
+from brdfkit.inverse.photographs.capture.listing import Listing
+from brdfkit.inverse.photographs.capture.making_lights import (
+    check_count,
+    check_spread,
+    find_lights_in_front,
+)
+from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
+from brdfkit.inverse.photographs.capture.pictures.coding import Coding
+from brdfkit.inverse.photographs.capture.pictures.masks import (
+    describe_found_mask,
+    find_object,
+    read_mask,
+)
+from brdfkit.inverse.photographs.capture.pictures.photograph_file import read_linear
+from brdfkit.inverse.photographs.capture.pictures.raw_file import require_raw_reader
+
+# A photograph is unlit if its mean is less than this share of the median of all means
+UNLIT = 1e-3
+# Values equal to the largest one of a channel are clipped if they are more than this share
+CLIPPED_SHARE = 1e-4
+
+
+def read_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
+    """Return the photographs of an object in a folder, as `listing` describes them.
+
+    `coding` tells how photographs of 8 bits are coded. Unlit photographs, and those whose lights
+    are behind the object, are left out with a note. Raises `BrdfkitError` for files that are
+    missing, damaged or do not fit each other.
+    """
+    check_count(listing.lights_file, len(listing.lights), listing.photographs)
+    require_raw_reader(listing.photographs)
+    mask, notes = _find_mask(listing, coding)
+    values, largest = _read_values(listing.photographs, mask, coding)
+    capture = ObjectCapture(
+        name=listing.name,
+        values=values,
+        mask=mask,
+        lights=listing.lights,
+        names=tuple(path.name for path in listing.photographs),
+        lost=find_clipped(values, largest),
+        normals=None if listing.normals is None else _find_normals(listing, mask),
+        pixel_size=listing.pixel_size,
+        distance=listing.distance,
+        notes=(*listing.notes, *notes),
+    )
+    capture = _leave_out(capture, _is_lit(values), "unlit")
+    in_front = find_lights_in_front(listing.lights_file, capture.lights)
+    capture = _leave_out(capture, in_front, "lit from behind the object")
+    check_spread(listing.lights_file, capture.lights)
+    return capture
+
+
+def find_clipped(values: FloatArray, largest: float) -> BoolArray:
+    """Return which values (lights, n, 3) are those of a saturated sensor.
+
+    They equal the largest value that the format has, or the largest value of their channel if that
+    occurs often: a white balance scales the colours, so that each is saturated at its own value.
+    """
+    clipped = np.empty(values.shape, bool)
+    for channel in range(3):
+        own = values[..., channel]
+        top = own.max()
+        at_top = own >= top
+        often = top > 0 and at_top.sum() > max(1, CLIPPED_SHARE * own.size)
+        clipped[..., channel] = (at_top & often) | (own >= largest)
+    return clipped
+
+
+def _find_mask(listing: Listing, coding: Coding | None) -> tuple[BoolArray, tuple[str, ...]]:
+    """Return which pixels show the object, and sentences on how they were found."""
+    if listing.mask is not None:
+        return read_mask(listing.mask), ()
+    brightest = darkest = np.zeros((0, 0), np.float32)
+    for path in listing.photographs:
+        grey = read_linear(path, coding)[0].max(axis=2)
+        if path == listing.photographs[0]:
+            brightest, darkest = grey.copy(), grey
+        _check_shape(path, grey, brightest.shape, listing.photographs[0].name)
+        brightest, darkest = np.maximum(brightest, grey), np.minimum(darkest, grey)
+    mask = find_object(brightest, darkest)
+    if mask.sum() == 0:
+        raise BrdfkitError(f"{listing.photographs[0].parent}: all photographs are black.")
+    return mask, (describe_found_mask(mask, len(listing.photographs)),)
+
+
+def _read_values(
+    photographs: tuple[Path, ...], mask: BoolArray, coding: Coding | None
+) -> tuple[FloatArray, float]:
+    """Return the values (lights, n, 3) within the mask, and the largest value of the format."""
+    count = int(mask.sum())
+    require_bytes(len(photographs) * count * 3 * 5, f"{photographs[0].parent}: the photographs")
+    values: FloatArray = np.empty((len(photographs), count, 3), np.float32)
+    largest = np.inf
+    for path, own in zip(photographs, values, strict=True):
+        picture, largest = read_linear(path, coding)
+        _check_shape(path, picture, mask.shape, "the mask")
+        own[:] = picture[mask]
+        bad = int((~np.isfinite(own)).any(axis=1).sum())
+        if bad:
+            raise BrdfkitError(
+                f"{path}: {bad:,} of its pixels are not finite; paint them black in the mask."
+            )
+    np.maximum(values, 0, out=values)
+    return values, largest
+
+
+def _check_shape(path: Path, picture: FloatArray, shape: tuple[int, ...], other: str) -> None:
+    """Raise `BrdfkitError` unless a picture has the `shape` (height, width) of the `other` one."""
+    if picture.shape[:2] != shape:
+        own, first = (f"{s[1]} × {s[0]}" for s in (picture.shape, shape))
+        raise BrdfkitError(
+            f"{path}: it has {own} pixels, and {other} {first}; they should be alike."
+        )
+
+
+def _find_normals(listing: Listing, mask: BoolArray) -> FloatArray:
+    """Return the true unit normals (n, 3) within the mask.
+
+    Raises `BrdfkitError` for normals of another size than the photographs.
+    """
+    normals = np.asarray(listing.normals, float)
+    if normals.shape != (*mask.shape, 3):
+        raise BrdfkitError(
+            f"{listing.photographs[0].parent}: its true normals have the shape {normals.shape}, "
+            f"and the photographs {mask.shape}; they should be alike."
+        )
+    inside = normals[mask]
+    length = np.linalg.norm(inside, axis=1, keepdims=True)
+    return np.divide(inside, length, out=np.full_like(inside, np.nan), where=length > 0)
+
+
+def _is_lit(values: FloatArray) -> BoolArray:
+    """Return which of the photographs (lights, n, 3) are not black compared with the others."""
+    means = values.mean(axis=(1, 2), dtype=float)
+    lit: BoolArray = means > UNLIT * np.median(means)
+    return lit
+
+
+def _leave_out(capture: ObjectCapture, kept: BoolArray, reason: str) -> ObjectCapture:
+    """Return the photographs that are `kept` (lights,), with a note on the others."""
+    if kept.all():
+        return capture
+    names = [name for name, keep in zip(capture.names, kept, strict=True) if not keep]
+    shown = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+    note = f"{len(names)} of {len(kept)} photographs were left out, as they are {reason}: {shown}."
+    left = capture.select_lights(np.flatnonzero(kept))
+    return replace(left, notes=(*capture.notes, note))
