@@ -23,7 +23,7 @@ from brdfkit.inverse.photographs.capture.pictures.photograph_file import read_li
 
 HIGHLIGHT = 0.9  # share of the largest brightness above which a pixel belongs to the mirrored light
 ROUNDEST = 0.97  # share of the circle's area that the mask of a ball covers at least
-COMMON_SHARE = 0.5  # share of photographs in which the same pixel shows no light, but the room
+INNER = 0.97  # share of the radius within which lights are looked for: the edge mirrors all around
 
 
 def find_light_directions(photographs: Sequence[Path], mask: BoolArray) -> FloatArray:
@@ -33,7 +33,20 @@ def find_light_directions(photographs: Sequence[Path], mask: BoolArray) -> Float
     for a photograph in which the ball mirrors no light.
     """
     centre, radius = fit_circle(mask, photographs[0].parent)
-    return np.array([_find_direction(path, mask, centre, radius) for path in photographs])
+    return np.array([_find_direction(path, centre, radius) for path in photographs])
+
+
+def find_light_directions_in_circle(
+    photographs: Sequence[Path], centre: FloatArray, radius: float
+) -> FloatArray:
+    """Return unit vectors (k, 3) to the lights that a chrome ball mirrors in `photographs`.
+
+    The ball's `centre` (2,) is column and row from the lower left, beginning at 1, as Matlab counts
+    them; `radius` is in pixels.
+    """
+    height = len(read_linear(photographs[0], Coding())[0])
+    from_above = np.array([centre[0] - 1, height - centre[1]])
+    return np.array([_find_direction(path, from_above, radius) for path in photographs])
 
 
 def fit_circle(mask: BoolArray, where: object) -> tuple[FloatArray, float]:
@@ -52,9 +65,14 @@ def fit_circle(mask: BoolArray, where: object) -> tuple[FloatArray, float]:
     return np.array([columns.mean(), rows.mean()]), radius
 
 
-def _find_direction(path: Path, mask: BoolArray, centre: FloatArray, radius: float) -> FloatArray:
-    """Return the unit vector (3,) to the light that the ball mirrors in a photograph."""
-    grey = read_linear(path, Coding())[0].mean(axis=2) * mask
+def _find_direction(path: Path, centre: FloatArray, radius: float) -> FloatArray:
+    """Return the unit vector (3,) to the light that the ball mirrors in a photograph.
+
+    `centre` (2,) is column and row of the ball's middle, and `radius` its radius [pixels].
+    """
+    grey = read_linear(path, Coding())[0].mean(axis=2)
+    rows, columns = np.indices(grey.shape)
+    grey = grey * (np.hypot(columns - centre[0], rows - centre[1]) < INNER * radius)
     bright = grey > HIGHLIGHT * grey.max()
     pieces, count = ndimage.label(bright)
     if count == 0:

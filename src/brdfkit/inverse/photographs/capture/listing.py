@@ -31,6 +31,10 @@ class Listing:
         The true normals, where they are known.
     pixel_size, distance : float, optional
         See `ObjectCapture`.
+    width : float, optional
+        The width of the object in the mask [m].
+    fov : float, optional
+        The angle across the width of a photograph [degrees].
     notes : tuple of str
         Sentences on what was found so far.
     """
@@ -44,4 +48,6 @@ class Listing:
     normals: FloatArray | None = None
     pixel_size: float | None = None
     distance: float | None = None
+    width: float | None = None
+    fov: float | None = None
     notes: tuple[str, ...] = ()

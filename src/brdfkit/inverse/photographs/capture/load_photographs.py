@@ -2,16 +2,39 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.capture import Capture
-from brdfkit.inverse.photographs.capture.capture_file import NAME as CAPTURE_FILE
 from brdfkit.inverse.photographs.capture.capture_file import load_capture
+from brdfkit.inverse.photographs.capture.diagnosis.diagnose import (
+    adapt_strengths,
+    find_coding,
+    turn_lights,
+)
 from brdfkit.inverse.photographs.capture.folders import find_listing
+from brdfkit.inverse.photographs.capture.listing import Listing
+from brdfkit.inverse.photographs.capture.making_lights import check_spread, find_lights_in_front
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
-from brdfkit.inverse.photographs.capture.pictures.coding import to_coding
-from brdfkit.inverse.photographs.capture.reading import read_object
+from brdfkit.inverse.photographs.capture.pictures.coding import LINEAR, Coding, to_coding
+from brdfkit.inverse.photographs.capture.pictures.photograph_file import (
+    EightBitError,
+    list_photographs,
+)
+from brdfkit.inverse.photographs.capture.reading import leave_out, read_object
+from brdfkit.inverse.photographs.capture.toml_entries import NAME as CAPTURE_FILE
+
+# What Lambert's law says of the coding of photographs, which `find_coding` names
+CODED_NOTE = (
+    "the photographs seem to be coded with a gamma, as Lambert's law fits their values to the "
+    "power of 2.2 much better; give linear ones, or --linearise sRGB."
+)
+DECODED_NOTE = (
+    "the photographs seem to have been linear before a gamma was removed, as Lambert's law fits "
+    "them much better then; --linearise linear keeps their numbers."
+)
+NOTES = {"coded": CODED_NOTE, "decoded": DECODED_NOTE}
 
 
 def load_photographs(
@@ -25,8 +48,9 @@ def load_photographs(
         A folder with ``capture.toml``, one of DiLiGenT, or one of the other kinds that
         docs/how_to/photographs.md lists.
     linearise : str or float, optional
-        How photographs of 8 bits are coded: "linear" if their numbers are in proportion to light,
-        "sRGB", "gamma" (2.2), or the exponent of a gamma. They are refused without it.
+        How the numbers of photographs are coded: "linear" if they are in proportion to light,
+        "sRGB", "gamma" (2.2), or the exponent of a gamma. Without it 16 bits are linear, and
+        photographs of 8 bits are refused.
 
     Returns
     -------
@@ -47,12 +71,43 @@ def load_photographs(
     folder, coding = Path(folder), to_coding(linearise)
     if not folder.is_dir():
         raise BrdfkitError(f"{folder}: there is no such folder; check the path.")
-    if (folder / CAPTURE_FILE).is_file():
-        return load_capture(folder, accept_8_bit=coding is not None)
     listing = find_listing(folder)
-    if listing is None:
-        raise BrdfkitError(
-            f"{folder}: there is no {CAPTURE_FILE} in it, and it is no folder of another kind that "
-            "says where the lights are; see docs/how_to/photographs.md."
-        )
-    return read_object(listing, coding)
+    if listing is not None:
+        return load_object(listing, coding)
+    if (folder / CAPTURE_FILE).is_file():
+        return load_capture(folder, coding=coding)
+    count = len(list_photographs(folder))
+    raise BrdfkitError(
+        f"{folder}: there is no {CAPTURE_FILE} in it, nor another file that says where the lights "
+        f"of its {count} photographs are; add lights.txt, with x y z of each (right, up, to the "
+        "camera)."
+    )
+
+
+def load_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
+    """Return the photographs of an object that `listing` describes, with notes on what is odd.
+
+    `coding` tells how their numbers are coded. Raises the errors of `load_photographs`.
+    """
+    try:
+        capture = _adapt_lights(read_object(listing, coding), listing)
+    except EightBitError as error:
+        capture = _adapt_lights(read_object(listing, Coding()), listing)
+        word = "sRGB" if find_coding(capture) == "coded" else LINEAR
+        raise EightBitError(
+            f"{str(error).removesuffix('.')}; by Lambert's law they look like {word}."
+        ) from None
+    found = find_coding(capture)
+    if found is None or (found == "decoded" and coding in (None, Coding())):
+        return capture
+    return replace(capture, notes=(*capture.notes, NOTES[found]))
+
+
+def _adapt_lights(capture: ObjectCapture, listing: Listing) -> ObjectCapture:
+    """Return photographs with lights in their axes, and in front of the object."""
+    path = listing.lights_file
+    capture = turn_lights(capture, path)
+    in_front = find_lights_in_front(path, capture.lights)
+    capture = leave_out(capture, in_front, "lit from behind the object")
+    check_spread(path, capture.lights)
+    return adapt_strengths(capture, path, listing.has_intensities)

@@ -13,7 +13,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
 
 SEPARATORS = re.compile(r"[,;\s]+")
-COMMENT = re.compile(r"(?:#|%|//).*")
+COMMENT = re.compile(r"(?:^|\s)(?:#|%|//).*")
 LONGEST = 2**22  # bytes of a table; longer files are no tables of lights
 TEXT_SUFFIXES = ".txt", ".csv", ".tsv", ".dat", ".lp"
 
@@ -34,6 +34,15 @@ class NumberTable:
 def read_words(path: Path) -> list[list[str]]:
     """Return the words of each line of a text file, without comments and empty lines.
 
+    Raises the errors of `read_lines`.
+    """
+    lines = (SEPARATORS.split(line.strip(" \t,;")) for line in read_lines(path))
+    return [words for words in lines if words != [""]]
+
+
+def read_lines(path: Path) -> list[str]:
+    """Return the lines of a text file, without comments, empty lines, and blanks around them.
+
     Raises `BrdfkitError` for a file that is missing, too long, or no text.
     """
     path = require_file(path)
@@ -43,8 +52,8 @@ def read_words(path: Path) -> list[list[str]]:
         text = path.read_text(encoding="utf-8-sig")
     except (UnicodeDecodeError, OSError) as error:
         raise BrdfkitError(f"{path}: it is no text; save it as plain text in UTF-8.") from error
-    lines = (SEPARATORS.split(COMMENT.sub("", line).strip(" \t\r,;")) for line in text.splitlines())
-    return [words for words in lines if words != [""]]
+    lines = (COMMENT.sub("", line).strip() for line in text.splitlines())
+    return [line for line in lines if line]
 
 
 def read_number_table(path: Path) -> NumberTable:

@@ -11,11 +11,7 @@ from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.memory import require_bytes
 from brdfkit.inverse.photographs.capture.listing import Listing
-from brdfkit.inverse.photographs.capture.making_lights import (
-    check_count,
-    check_spread,
-    find_lights_in_front,
-)
+from brdfkit.inverse.photographs.capture.making_lights import check_count
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.capture.pictures.coding import Coding
 from brdfkit.inverse.photographs.capture.pictures.masks import (
@@ -25,6 +21,7 @@ from brdfkit.inverse.photographs.capture.pictures.masks import (
 )
 from brdfkit.inverse.photographs.capture.pictures.photograph_file import read_linear
 from brdfkit.inverse.photographs.capture.pictures.raw_file import require_raw_reader
+from brdfkit.inverse.photographs.capture.scale import find_scale
 
 # A photograph is unlit if its mean is less than this share of the median of all means
 UNLIT = 1e-3
@@ -35,14 +32,14 @@ CLIPPED_SHARE = 1e-4
 def read_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
     """Return the photographs of an object in a folder, as `listing` describes them.
 
-    `coding` tells how photographs of 8 bits are coded. Unlit photographs, and those whose lights
-    are behind the object, are left out with a note. Raises `BrdfkitError` for files that are
-    missing, damaged or do not fit each other.
+    `coding` tells how the numbers of photographs are coded. Unlit photographs are left out with a
+    note. Raises `BrdfkitError` for files that are missing, damaged or do not fit each other.
     """
     check_count(listing.lights_file, len(listing.lights), listing.photographs)
     require_raw_reader(listing.photographs)
     mask, notes = _find_mask(listing, coding)
     values, largest = _read_values(listing.photographs, mask, coding)
+    pixel_size, distance, scale_notes = find_scale(listing, mask)
     capture = ObjectCapture(
         name=listing.name,
         values=values,
@@ -51,15 +48,11 @@ def read_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
         names=tuple(path.name for path in listing.photographs),
         lost=find_clipped(values, largest),
         normals=None if listing.normals is None else _find_normals(listing, mask),
-        pixel_size=listing.pixel_size,
-        distance=listing.distance,
-        notes=(*listing.notes, *notes),
+        pixel_size=pixel_size,
+        distance=distance,
+        notes=(*listing.notes, *notes, *scale_notes),
     )
-    capture = _leave_out(capture, _is_lit(values), "unlit")
-    in_front = find_lights_in_front(listing.lights_file, capture.lights)
-    capture = _leave_out(capture, in_front, "lit from behind the object")
-    check_spread(listing.lights_file, capture.lights)
-    return capture
+    return leave_out(capture, _is_lit(values), "unlit")
 
 
 def find_clipped(values: FloatArray, largest: float) -> BoolArray:
@@ -148,7 +141,7 @@ def _is_lit(values: FloatArray) -> BoolArray:
     return lit
 
 
-def _leave_out(capture: ObjectCapture, kept: BoolArray, reason: str) -> ObjectCapture:
+def leave_out(capture: ObjectCapture, kept: BoolArray, reason: str) -> ObjectCapture:
     """Return the photographs that are `kept` (lights,), with a note on the others."""
     if kept.all():
         return capture

@@ -4,7 +4,8 @@ A new module is found without registration. It defines
 
 - ``NAME``: the kind's name for people;
 - ``find_listing(folder)``: returns the `Listing` of a folder of this kind, or None for a folder of
-  another kind; raises `BrdfkitError` for one of this kind that is damaged.
+  another kind; raises `BrdfkitError` for one of this kind that is damaged;
+- ``FALLBACK = True`` for a kind that is only tried where a folder is of no other kind.
 """
 
 from functools import cache
@@ -27,11 +28,14 @@ def find_listing(folder: Path) -> Listing | None:
 
     Raises `BrdfkitError` for a folder that could be of several kinds.
     """
-    found = {
-        module.NAME: listing for module in list_kinds() if (listing := module.find_listing(folder))
-    }
-    if len(found) > 1:
-        raise BrdfkitError(
-            f"{folder}: it could be {' or '.join(found)}; leave the files of one of them."
-        )
-    return next(iter(found.values()), None)
+    for is_fallback in False, True:
+        kinds = [m for m in list_kinds() if getattr(m, "FALLBACK", False) == is_fallback]
+        listings = {module.NAME: module.find_listing(folder) for module in kinds}
+        found = {name: listing for name, listing in listings.items() if listing is not None}
+        if len(found) > 1:
+            raise BrdfkitError(
+                f"{folder}: it could be {' or '.join(found)}; leave the files of one of them."
+            )
+        if found:
+            return next(iter(found.values()))
+    return None

@@ -10,6 +10,7 @@ from scipy import ndimage
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.pictures.photograph_file import (
+    is_mask,
     is_photograph,
     read_numbers,
 )
@@ -20,12 +21,7 @@ SMALLEST_OBJECT = 16  # pixels
 
 def find_mask_file(folder: Path) -> Path | None:
     """Return the file in a folder whose name ends in mask, or begins with it; None without one."""
-    found = [
-        file
-        for file in sorted(folder.iterdir())
-        if is_photograph(file)
-        and (file.stem.lower().endswith("mask") or file.stem.lower().startswith("mask"))
-    ]
+    found = [file for file in sorted(folder.iterdir()) if is_photograph(file) and is_mask(file)]
     if len(found) > 1:
         names = " and ".join(file.name for file in found[:2])
         raise BrdfkitError(f"{folder}: {names} could both be the mask; leave one of them.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
 # Formats that Mitsuba reads
 MITSUBA_SUFFIXES = ".exr", ".png", ".jpg", ".jpeg", ".hdr", ".rgbe", ".pfm", ".bmp", ".tga", ".ppm"
+EIGHT_BIT_SUFFIXES = ".jpg", ".jpeg", ".bmp", ".tga"
 SUFFIXES = (*MITSUBA_SUFFIXES, *TIFF_SUFFIXES, *RAW_SUFFIXES)
 
 
@@ -30,20 +32,45 @@ def is_photograph(path: Path) -> bool:
     return path.suffix.lower() in SUFFIXES and not path.name.startswith(".") and path.is_file()
 
 
+def list_photographs(folder: Path) -> tuple[Path, ...]:
+    """Return the photographs in a folder, in the order of the numbers in their names.
+
+    Masks, whose names begin with mask or end in it, are left out, and so are pictures of normals.
+    """
+    files = (file for file in folder.iterdir() if is_photograph(file) and not is_mask(file))
+    files = (file for file in files if not file.stem.lower().startswith("normal"))
+    return tuple(sorted(files, key=_order_numbers))
+
+
+def is_mask(path: Path) -> bool:
+    """Return whether the name of a picture is that of a mask."""
+    stem = path.stem.lower()
+    return stem.startswith("mask") or stem.endswith("mask")
+
+
+def _order_numbers(path: Path) -> list[tuple[str, int]]:
+    """Return a key that sorts names by the numbers in them, so that 2 comes before 10."""
+    return [(word, int(part or 0)) for word, part in re.findall(r"(\D*)(\d*)", path.name)]
+
+
 def read_linear(path: Path, coding: Coding | None) -> tuple[FloatArray, float]:
     """Read a photograph's linear values (height, width, 3), float32, and its largest possible one.
 
     Whole numbers are divided by the largest one of their type, so that the largest value is 1; it
-    is infinite for files of floats. `coding` tells how 8-bit numbers are coded. Raises
-    `BrdfkitError` for a file that is missing, damaged, or has 8 bits without a `coding`.
+    is infinite for files of floats. `coding` tells how whole numbers are coded, except those of
+    RAW files; without it numbers of 16 bits are linear. Raises `BrdfkitError` for a file that is
+    missing, damaged, or has 8 bits without a `coding`.
     """
+    error = EightBitError(f"{path}: it has 8 bits; {ADVICE}.")
+    if path.suffix.lower() in EIGHT_BIT_SUFFIXES and coding is None:
+        raise error
     numbers = read_numbers(path)
     if numbers.dtype.kind == "f":
         return _to_colours(path, numbers.astype(np.float32, copy=False)), np.inf
     if numbers.dtype.itemsize == 1 and coding is None:
-        raise EightBitError(f"{path}: it has 8 bits; {ADVICE}.")
+        raise error
     values = numbers.astype(np.float32) / np.float32(np.iinfo(numbers.dtype).max)
-    if numbers.dtype.itemsize == 1 and coding is not None:
+    if coding is not None and path.suffix.lower() not in RAW_SUFFIXES:
         values = coding.decode(values)
     return _to_colours(path, values), 1.0
 

@@ -1,0 +1,119 @@
+"""Fits Lambert's law to photographs of an object, without its shadows and highlights.
+
+A surface with the normal n and the albedo ρ has the value i_k = l_k · b with b = ρ n under the
+light l_k, whose length is its intensity [Woodham 1980].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
+
+MOST_VALUES = 400_000  # of a sample
+# Ranks of a pixel's values, as shares of all, between which shadows and highlights are rare
+LOWEST_RANK, HIGHEST_RANK = 0.25, 0.85
+FEWEST_RANKED = 7  # lights; with fewer all values count
+ROUNDS = 40  # of the search for the strengths of lights
+CHANGE = 1e-3  # of a strength, at which the search ends
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Every so many-th pixel of an object, in grey.
+
+    `values` (lights, n): mean of the channels; `counted` (lights, n): which of them are not lost;
+    `mask` (height, width): the pixels among all those of the sample; `directions` (lights, 3);
+    `intensities` (lights,): irradiances in the middle of the object, means of the channels.
+    """
+
+    values: FloatArray
+    counted: BoolArray
+    mask: BoolArray
+    directions: FloatArray
+    intensities: FloatArray
+
+    @classmethod
+    def take(cls, capture: ObjectCapture) -> Sample:
+        """Return a sample of about `MOST_VALUES` values of the photographs of an object."""
+        most = MOST_VALUES / len(capture.values)
+        step = int(np.ceil(np.sqrt(max(1.0, capture.mask.sum() / most))))
+        grid = np.zeros(capture.mask.shape, bool)
+        grid[::step, ::step] = True
+        chosen = np.flatnonzero(grid[capture.mask])
+        counted = np.ones((len(capture.values), len(chosen)), bool)
+        if capture.lost is not None:
+            counted &= ~capture.lost[:, chosen].any(axis=2)
+        values = capture.values[:, chosen].mean(axis=2, dtype=float)
+        # The light of a lamp is taken to be the same everywhere as in the middle of the object
+        _, irradiance = capture.lights.illuminate(np.zeros((1, 3)))
+        return cls(
+            values=values,
+            counted=counted,
+            mask=capture.mask[::step, ::step],
+            directions=capture.lights.directions,
+            intensities=irradiance.mean(axis=(1, 2)),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class LambertFit:
+    """Lambert's law, fitted to a `Sample`.
+
+    `scaled_normals` (n, 3): albedo times normal; `used` (lights, n): which values were fitted;
+    `unexplained`: the standard deviation of the values from the law, as a share of their standard
+    deviation from their means over the lights, as a median of the pixels.
+    """
+
+    scaled_normals: FloatArray
+    used: BoolArray
+    unexplained: float
+
+
+def fit_lambert(values: FloatArray, counted: BoolArray, lights: FloatArray) -> LambertFit:
+    """Fit Lambert's law to values (lights, n), of which `counted` may be used.
+
+    `lights` (lights, 3) are directions times intensities. The darkest and the brightest values of
+    each pixel are left out.
+    """
+    used = counted.copy()
+    count = len(values)
+    if count >= FEWEST_RANKED:
+        brightness = values / np.linalg.norm(lights, axis=1, keepdims=True)
+        rank = brightness.argsort(axis=0).argsort(axis=0)
+        used &= (rank >= LOWEST_RANK * count) & (rank < HIGHEST_RANK * count)
+    outer = (lights[:, :, None] * lights[:, None, :]).reshape(count, 9)
+    normal = (used.T.astype(float) @ outer).reshape(-1, 3, 3)
+    normal += 1e-9 * np.trace(normal, axis1=1, axis2=2)[:, None, None] * np.eye(3) + 1e-12 * np.eye(
+        3
+    )
+    b = np.linalg.solve(normal, ((used * values).T @ lights)[..., None])[..., 0]
+    number = np.maximum(used.sum(axis=0), 1)
+    residual = (used * (values - lights @ b.T) ** 2).sum(axis=0)
+    mean = (used * values).sum(axis=0) / number
+    variance = (used * (values - mean) ** 2).sum(axis=0)
+    share = np.median(residual[variance > 0] / variance[variance > 0]) if variance.any() else 0.0
+    return LambertFit(b, used, float(np.sqrt(share)))
+
+
+def estimate_strengths(sample: Sample) -> tuple[FloatArray, LambertFit]:
+    """Estimate the strengths of the lights (lights,), with the mean 1, and fit Lambert's law.
+
+    Strengths and normals are fitted in turn to the photographs, whose directions are known.
+    """
+    strengths = np.ones(len(sample.values))
+    lights = sample.directions
+    fit = fit_lambert(sample.values, sample.counted, lights)
+    for _ in range(ROUNDS):
+        predicted = sample.directions @ fit.scaled_normals.T * fit.used
+        ratio = (sample.values * predicted).sum(axis=1)
+        ratio = ratio / np.maximum((predicted**2).sum(axis=1), 1e-300)
+        before, strengths = strengths, np.where(ratio > 0, ratio, strengths)
+        strengths = strengths / strengths.mean()
+        fit = fit_lambert(sample.values, sample.counted, strengths[:, None] * sample.directions)
+        if np.abs(strengths - before).max() < CHANGE:
+            break
+    return strengths, fit
