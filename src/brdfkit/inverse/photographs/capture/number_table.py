@@ -64,7 +64,7 @@ def read_number_table(path: Path) -> NumberTable:
     and for words or numbers that are not finite inside the table.
     """
     lines = read_words(path)
-    while lines and not _is_row(lines[0]):
+    while lines and not any(map(_is_number, lines[0])):
         del lines[0]
     if len(lines) > 1 and len(lines[0]) == 1 != len(lines[1]):
         del lines[0]
@@ -108,11 +108,6 @@ def read_vectors(path: Path, count: int | None = None) -> NumberTable:
             "of each light in a row of its own."
         )
     return table
-
-
-def _is_row(words: list[str]) -> bool:
-    """Return whether words are numbers, perhaps behind a name."""
-    return all(map(_is_number, words)) or (len(words) > 3 and all(map(_is_number, words[1:])))
 
 
 def _is_number(word: str) -> bool:

@@ -27,6 +27,7 @@ from brdfkit.inverse.photographs.capture.scale import find_scale
 UNLIT = 1e-3
 # Values equal to the largest one of a channel are clipped if they are more than this share
 CLIPPED_SHARE = 1e-4
+ALMOST = 0.9999  # share of the largest value of a format that is clipped; a demosaic may round it
 
 
 def read_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
@@ -67,7 +68,7 @@ def find_clipped(values: FloatArray, largest: float) -> BoolArray:
         top = own.max()
         at_top = own >= top
         often = top > 0 and at_top.sum() > max(1, CLIPPED_SHARE * own.size)
-        clipped[..., channel] = (at_top & often) | (own >= largest)
+        clipped[..., channel] = (at_top & often) | (own >= ALMOST * largest)
     return clipped
 
 
@@ -75,16 +76,15 @@ def _find_mask(listing: Listing, coding: Coding | None) -> tuple[BoolArray, tupl
     """Return which pixels show the object, and sentences on how they were found."""
     if listing.mask is not None:
         return read_mask(listing.mask), ()
-    brightest = darkest = np.zeros((0, 0), np.float32)
-    for path in listing.photographs:
+    first = listing.photographs[0]
+    brightest = read_linear(first, coding)[0].max(axis=2)
+    for path in listing.photographs[1:]:
         grey = read_linear(path, coding)[0].max(axis=2)
-        if path == listing.photographs[0]:
-            brightest, darkest = grey.copy(), grey
-        _check_shape(path, grey, brightest.shape, listing.photographs[0].name)
-        brightest, darkest = np.maximum(brightest, grey), np.minimum(darkest, grey)
-    mask = find_object(brightest, darkest)
+        _check_shape(path, grey, brightest.shape, first.name)
+        np.maximum(brightest, grey, out=brightest)
+    mask = find_object(brightest)
     if mask.sum() == 0:
-        raise BrdfkitError(f"{listing.photographs[0].parent}: all photographs are black.")
+        raise BrdfkitError(f"{first.parent}: all photographs are black; check their exposure.")
     return mask, (describe_found_mask(mask, len(listing.photographs)),)
 
 

@@ -25,6 +25,7 @@ HALF_TURN = np.diag([-1.0, -1.0, 1.0])
 # Ratios of what Lambert's law leaves unexplained, below which the evidence is overwhelming
 BETTER_STRENGTHS = 0.5
 SMALLEST_SPREAD = 0.1  # standard deviation of estimated strengths below which lights are equal
+MOST_UNEXPLAINED = 0.15  # by Lambert's law with estimated strengths; glossy objects mislead it
 BETTER_CODING = 0.85
 
 
@@ -97,7 +98,7 @@ def adapt_strengths(
         )
     else:
         strengths, free = estimate_strengths(sample)
-        is_better = free.unexplained < BETTER_STRENGTHS * given
+        is_better = free.unexplained < min(BETTER_STRENGTHS * given, MOST_UNEXPLAINED)
         if not is_better or strengths.std() < SMALLEST_SPREAD:
             return capture
         intensities = np.repeat(strengths[:, None], 3, axis=1)

@@ -50,7 +50,7 @@ def to_coding(linearise: str | float | None) -> Coding | None:
         exponent = float(word)
     except (TypeError, ValueError):
         exponent = 0.0
-    if is_number(exponent) and 1 <= exponent <= 5:
+    if not isinstance(word, bool) and is_number(exponent) and 1 <= exponent <= 5:
         return Coding(exponent)
     raise wrong_value_error(
         "linearise", linearise, "linear, sRGB, gamma, or the exponent of a gamma between 1 and 5"

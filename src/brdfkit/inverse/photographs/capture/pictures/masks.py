@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from scipy import ndimage
 
-from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.pictures.photograph_file import (
     is_mask,
@@ -17,6 +18,10 @@ from brdfkit.inverse.photographs.capture.pictures.photograph_file import (
 
 BINS = 256  # of the histogram that Otsu's threshold divides
 SMALLEST_OBJECT = 16  # pixels
+# A background was made black if pixels that are nearly black, below this share of the largest
+# value, are few, below this share of those that are black
+NEARLY_BLACK, FEW = 0.01, 0.05
+LARGEST_HOLE = 0.005  # share of the object that a hole may have and be filled
 
 
 def find_mask_file(folder: Path) -> Path | None:
@@ -50,23 +55,34 @@ def read_mask(path: Path) -> BoolArray:
     return mask
 
 
-def find_object(brightest: FloatArray, darkest: FloatArray) -> BoolArray:
+def find_object(brightest: FloatArray) -> BoolArray:
     """Return the pixels of an object (height, width) in front of a dark background.
 
-    `brightest` and `darkest` are the largest and smallest values of each pixel in all photographs.
-    Otsu's threshold divides the brightest values, on a scale of their square roots, into those of
-    the background and those of the object, whose largest piece without holes is returned.
+    `brightest` is the largest value of each pixel in all photographs. If the background was made
+    black, all else is the object. Otherwise Otsu's threshold divides the values, on a scale of
+    their square roots, into those of the background and those of the object. Its largest piece is
+    returned, with small holes filled, such as the pupil of an eye.
     """
-    if darkest.max() > 0 and (brightest > 0).mean() < 0.95:  # the background was made black
-        mask = brightest > 0
+    black = brightest <= 0
+    nearly_black = ~black & (brightest < NEARLY_BLACK * brightest.max())
+    if nearly_black.sum() < FEW * black.sum():
+        mask = ~black
     else:
         mask = np.sqrt(brightest) > find_threshold(np.sqrt(brightest))
+    mask = _select_pieces(mask, lambda sizes: sizes == sizes.max())
+    holes = ndimage.binary_fill_holes(mask) & ~mask
+    largest = LARGEST_HOLE * mask.sum()
+    return mask | _select_pieces(holes, lambda sizes: sizes < largest)
+
+
+def _select_pieces(mask: BoolArray, choose: Callable[[IntArray], BoolArray]) -> BoolArray:
+    """Return the connected pieces of a mask that a function chooses by their sizes [pixels]."""
     pieces, count = ndimage.label(mask)
-    if count > 1:
-        sizes = np.bincount(pieces.ravel())[1:]
-        mask = pieces == 1 + np.argmax(sizes)
-    filled: BoolArray = ndimage.binary_fill_holes(mask)
-    return filled
+    if count == 0:
+        return mask
+    chosen = np.concatenate([[False], choose(np.bincount(pieces.ravel())[1:])])
+    selected: BoolArray = chosen[pieces]
+    return selected
 
 
 def find_threshold(values: FloatArray) -> float:
