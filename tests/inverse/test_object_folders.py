@@ -442,7 +442,7 @@ TRAPS = {
     "a series without a mask": (
         "series",
         change("ball.txt", lambda t: t.replace("\nmask.png", "")),
-        "promises 12",
+        "and 11 names follow",
     ),
     "no normals": (
         "diligent",

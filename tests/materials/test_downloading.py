@@ -406,6 +406,49 @@ def test_wrong_words(lab, cache, words, said):
     assert not cache.exists()
 
 
+@pytest.fixture
+def scan(lab, server, cache):
+    """The collection `lab` has a folder with two files, which are on the server."""
+    parts = {"scan/1.png": b"one", "scan/lights/1.txt": b"0 0 1"}
+    server.files |= {f"/{file}": data for file, data in parts.items()}
+    lab(
+        files=[
+            {"file": file, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+            for file, data in parts.items()
+        ]
+    )
+    return cache / "lab" / "scan"
+
+
+@pytest.mark.quick
+def test_a_folder_of_photographs(scan, server):
+    assert "brdfkit data get lab/scan" in fails("lab/scan", public.find_folder)
+    assert "brdfkit svbrdf lab/scan" in fails("lab/scan", load)
+    assert re.search("lab/scan .*to download", cli("data", "list", "lab").stdout)
+    told = []
+    assert download("lab/scan", lambda *bytes_done: told.append(bytes_done)) == scan
+    assert public.find_folder("lab/scan") == scan
+    assert files(scan) == ["1.png", "1.txt"]
+    assert (scan / "lights" / "1.txt").read_bytes() == b"0 0 1"
+    assert told == [(3, 8), (8, 8)]
+    asked = len(server.asked)
+    result = cli("data", "get", "lab/scan")
+    assert (result.exit_code, len(server.asked)) == (0, asked)
+    assert str(scan) in result.stdout
+    listed = cli("data", "list", "lab").stdout
+    assert re.search("lab/scan .*here", listed)
+    assert "1.png" not in listed
+    assert "did you mean lab/scan" in fails("lab/scam", public.find_folder)
+
+
+@pytest.mark.quick
+def test_a_changed_file_in_a_folder_is_fetched_again(scan):
+    download("lab/scan")
+    (scan / "1.png").write_bytes(b"two")
+    download("lab/scan")
+    assert (scan / "1.png").read_bytes() == b"one"
+
+
 # What the index says
 
 
@@ -414,7 +457,7 @@ def test_the_index_is_complete():
     found = public.list_collections()
     assert public.list_collections() == found  # what was read before is as it was
     assert {name: len(c.files) for name, c in found.items()} == {
-        "merl": 100, "rgl": 62, "cornell": 6, "curet": 1, "utia": 0,
+        "merl": 100, "rgl": 62, "cornell": 6, "curet": 1, "utia": 0, "captures": 244,
     }  # fmt: skip
     for collection in found.values():
         assert all([collection.title, collection.citation, collection.licence, collection.terms])
@@ -422,7 +465,7 @@ def test_the_index_is_complete():
         for name, listed in collection.files.items():
             assert name == listed.name
             assert not listed.url or re.fullmatch(r"https://[^{} ]+", listed.url)
-            assert not listed.url or listed.url.endswith(listed.file)
+            assert not listed.url or listed.url.endswith(listed.path.name)
             assert re.fullmatch(r"([0-9a-f]{64})?", listed.sha256)
     merl = found["merl"].files.values()
     assert {listed.bytes for listed in merl} == {34_992_012}

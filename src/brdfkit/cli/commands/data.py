@@ -13,7 +13,7 @@ from brdfkit.cli.console import Console
 from brdfkit.cli.options import output_options
 
 if TYPE_CHECKING:
-    from brdfkit.materials.collections.public import Collection
+    from brdfkit.materials.collections.public import Collection, ListedFile
 
 
 @click.group(invoke_without_command=True)
@@ -27,6 +27,7 @@ def data(context: click.Context, console: Console) -> None:
     brdfkit data list merl                      list the materials of one
     brdfkit data get merl/gold-metallic-paint   download a material
     brdfkit fit merl/gold-metallic-paint        use it by its name
+    brdfkit data get captures/cat               download photographs of an object
 
     Downloaded files are kept in your cache folder. Only `brdfkit data get` uses the network.
     """
@@ -104,7 +105,8 @@ def _print_collections(collections: Mapping[str, Collection], console: Console) 
     licence = next(iter(list_materials().values())).licence
     rows = [("brdfkit's own", ", ".join(list_materials()), str(len(list_materials())), "", licence)]
     for name, c in collections.items():
-        here, download = len(c.list_files_on_disk()), sum(bool(f.url) for f in c.files.values())
+        here = len(c.list_files_on_disk()) + sum(map(_is_here, c.folders.values()))
+        download = len(c.folders) or sum(bool(f.url) for f in c.files.values())
         rows.append((name, c.title, str(here), str(download or "by hand"), c.licence))
     console.print_table(columns, rows)
 
@@ -126,15 +128,26 @@ def _print_collection(collection: Collection, console: Console) -> None:
         return
     files, here = collection.files, collection.list_files_on_disk()
     rows = []
+    for name, parts in collection.folders.items():
+        size = sum(part.bytes for part in parts)
+        rows.append((name, f"{size / 1e6:.1f}", "here" if _is_here(parts) else "to download"))
+        files = {key: file for key, file in files.items() if file not in parts}
     for name in sorted({*files, *here}):
         size = files[name].bytes if name in files else here[name].stat().st_size
         state = "here" if name in here else "to download" if files[name].url else "by hand"
         rows.append((name, f"{size / 1e6:.1f}" if size else "", state))
     if rows:
-        console.print_table(["material", ">size [MB]", ""], rows)
+        console.print_table(
+            ["photographs" if collection.folders else "material", ">size [MB]", ""], rows
+        )
     console.output.print(str(collection))
-    if not any(listed.url for listed in files.values()):
+    if not any(listed.url for listed in collection.files.values()):
         console.output.print(f"To use one, {collection.explain_manual_fetch()}.")
+
+
+def _is_here(files: Iterable[ListedFile]) -> bool:
+    """Return whether all files of a folder of photographs are on this disk."""
+    return all(file.path.is_file() for file in files)
 
 
 def _print_files(

@@ -7,7 +7,7 @@ interrupted download resume, and downloads one file of a zip archive without the
 import io
 import os
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -38,6 +38,7 @@ Report = Callable[[int, int | None], object]
 def download(name: str, progress: Report | None = None) -> Path:
     """Download a material of a public collection, and return the path of its file.
 
+    For a folder of photographs all of its files are downloaded, and its path is returned.
     `progress` is called with the number of bytes done and the number of all bytes, which is None
     where the server does not state it. A file with the right checksum is not downloaded again.
     Raises `BrdfkitError`, which says what to do, where no address is known, the connection fails,
@@ -47,20 +48,45 @@ def download(name: str, progress: Report | None = None) -> Path:
     'alum-bronze.binary'
     """
     owner = public.find_collection(name)
+    if name in owner.folders:
+        _download_files(owner.folders[name], owner, progress)
+        return public.find_folder(name)
     listed = owner.files.get(name)
     if listed is None or not listed.url:
         # Return the file that the user has put there, or raise an error that explains how to get it
         return public.find_file(name)
+    _download_file(listed, owner, progress or (lambda done, total: None))
+    return listed.path
+
+
+def _download_files(
+    files: Sequence[ListedFile], owner: Collection, progress: Report | None
+) -> None:
+    """Download the files of a folder of photographs, whose sizes are known."""
+    total = sum(listed.bytes for listed in files)
+    before = 0
+    for listed in files:
+
+        def report(done: int, _: int | None, before: int = before) -> None:
+            """Report the bytes of this file together with those of the files before."""
+            if progress is not None:
+                progress(before + done, total)
+
+        _download_file(listed, owner, report)
+        before += listed.bytes
+
+
+def _download_file(listed: ListedFile, owner: Collection, progress: Report) -> None:
+    """Download a listed file, unless it is there with the right checksum."""
     pooch.get_logger().setLevel("WARNING")
     with _explain_errors(listed, owner):
         pooch.retrieve(
             listed.url,
             known_hash=f"sha256:{listed.sha256}" if listed.sha256 else None,
-            fname=listed.file,
+            fname=listed.path.name,
             path=listed.path.parent,
-            downloader=_Download(listed, progress or (lambda done, total: None)),
+            downloader=_Download(listed, progress),
         )
-    return listed.path
 
 
 @contextmanager
@@ -117,7 +143,7 @@ class _Download:
 
     def _fetch_file(self, url: str, target: Path) -> None:
         """Download the file at `url` to `target`, resuming an interrupted download."""
-        part = self.listed.path.with_name(self.listed.file + PART)
+        part = self.listed.path.with_name(self.listed.path.name + PART)
         # Resume an interrupted download only if a checksum can prove that its parts fit together
         have = part.stat().st_size if self.listed.sha256 and part.is_file() else 0
         headers = PLAIN | ({"Range": f"bytes={have}-"} if have else {})

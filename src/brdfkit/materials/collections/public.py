@@ -1,7 +1,8 @@
 """Lists the public collections of measured materials, and finds their files in the cache folder.
 
 brdfkit ships none of these files. An index lists their names, checksums and addresses;
-`downloading.py` or the user puts the files into the user's cache folder.
+`downloading.py` or the user puts the files into the user's cache folder. A collection may also have
+folders of files, which are photographs of one object.
 """
 
 import csv
@@ -21,8 +22,9 @@ PART = ".part"  # suffix of a file while its download is incomplete
 class ListedFile:
     """A file of a public collection, as the index lists it.
 
-    `name`: name of the material for `brdfkit.load`, such as ``merl/alum-bronze``; `file`: name of
-    the file in the collection's folder; `bytes`: size, or 0 where it is unknown; `sha256`:
+    `name`: name of the material for `brdfkit.load`, such as ``merl/alum-bronze``, or of a file in a
+    folder of photographs, with its suffix; `file`: name of the file in the collection's folder,
+    perhaps behind that of a folder in it; `bytes`: size, or 0 where it is unknown; `sha256`:
     checksum, or "" where it is unknown; `url`: address, or "" where it is unknown. An address with
     # is that of a zip archive, followed by the file's name in the archive.
     """
@@ -57,6 +59,16 @@ class Collection:
     page: str
     note: str = ""
     files: dict[str, ListedFile] = field(default_factory=dict, repr=False)
+
+    @property
+    def folders(self) -> dict[str, tuple[ListedFile, ...]]:
+        """The files of each folder of photographs, by names such as ``captures/cat``."""
+        found: dict[str, list[ListedFile]] = {}
+        for listed in self.files.values():
+            first, slash, _ = listed.file.partition("/")
+            if slash:
+                found.setdefault(f"{self.name}/{first}", []).append(listed)
+        return {name: tuple(files) for name, files in found.items()}
 
     @property
     def folder(self) -> Path:
@@ -113,6 +125,11 @@ def find_file(name: str) -> Path:
     """
     owner = find_collection(name)
     listed = owner.files.get(name)
+    if name in owner.folders:
+        raise BrdfkitError(
+            f"{name}: is no material, but photographs of an object; 'brdfkit svbrdf {name}' fits "
+            "materials to them."
+        )
     if listed is None:
         if name in owner.list_files_on_disk():
             return owner.list_files_on_disk()[name]
@@ -131,6 +148,19 @@ def find_file(name: str) -> Path:
     return listed.path
 
 
+def find_folder(name: str) -> Path:
+    """Return the path of a folder of photographs, such as ``captures/cat``, on this disk.
+
+    Raises `BrdfkitError`, which says how to get it, where a file of it is missing.
+    """
+    owner = find_collection(name)
+    if name not in owner.folders:
+        raise no_such_error("folder of photographs", name, owner.folders)
+    if not all(listed.path.is_file() for listed in owner.folders[name]):
+        raise BrdfkitError(f"{name}: is not downloaded yet; run 'brdfkit data get {name}'.")
+    return owner.folder / name.partition("/")[2]
+
+
 def find_cache_folder() -> Path:
     """Return the user's cache folder for brdfkit, which has a folder for each collection."""
     import pooch
@@ -143,7 +173,7 @@ def _is_material_file(file: Path) -> bool:
 
 
 def _name_material(collection: str, file: str) -> str:
-    return f"{collection}/{file.partition('.')[0]}"
+    return f"{collection}/{file if '/' in file else file.partition('.')[0]}"
 
 
 def _make_collection(name: str, entry: dict[str, Any]) -> Collection:

@@ -24,7 +24,9 @@ from brdfkit.inverse.photographs.capture.pictures.photograph_file import (
 )
 from brdfkit.inverse.photographs.capture.reading import leave_out, read_object
 from brdfkit.inverse.photographs.capture.toml_entries import NAME as CAPTURE_FILE
+from brdfkit.materials.collections.public import find_folder
 
+DOWNLOADED = "captures"  # name of the collection of photographs
 # What Lambert's law says of the coding of photographs, which `find_coding` names
 CODED_NOTE = (
     "the photographs seem to be coded with a gamma, as Lambert's law fits their values to the "
@@ -46,7 +48,8 @@ def load_photographs(
     ----------
     folder : path
         A folder with ``capture.toml``, one of DiLiGenT, or one of the other kinds that
-        docs/how_to/photographs.md lists.
+        docs/how_to/photographs.md lists; or the name of photographs that `brdfkit data get`
+        downloaded, such as ``captures/cat``.
     linearise : str or float, optional
         How the numbers of photographs are coded: "linear" if they are in proportion to light,
         "sRGB", "gamma" (2.2), or the exponent of a gamma. Without it 16 bits are linear, and
@@ -68,9 +71,7 @@ def load_photographs(
     >>> load_photographs("pmsData/ballPNG").normals.shape    # doctest: +SKIP
     (15791, 3)
     """
-    folder, coding = Path(folder), to_coding(linearise)
-    if not folder.is_dir():
-        raise BrdfkitError(f"{folder}: there is no such folder; check the path.")
+    folder, coding = _find_folder(folder), to_coding(linearise)
     listing = find_listing(folder)
     if listing is not None:
         return load_object(listing, coding)
@@ -82,6 +83,16 @@ def load_photographs(
         f"of its {count} photographs are; add lights.txt, with x y z of each (right, up, to the "
         "camera)."
     )
+
+
+def _find_folder(folder: str | Path) -> Path:
+    """Return the path of a folder on this disk, also of one that `brdfkit data get` downloaded."""
+    path = Path(folder)
+    if path.is_dir():
+        return path
+    if path.parts[:1] == (DOWNLOADED,):
+        return find_folder(path.as_posix())
+    raise BrdfkitError(f"{folder}: there is no such folder; check the path.")
 
 
 def load_object(listing: Listing, coding: Coding | None) -> ObjectCapture:

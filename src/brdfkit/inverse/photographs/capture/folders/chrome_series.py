@@ -17,6 +17,7 @@ from brdfkit.inverse.photographs.capture.listing import Listing
 from brdfkit.inverse.photographs.capture.making_lights import check_count, make_distant_lights
 from brdfkit.inverse.photographs.capture.number_table import read_vectors, read_words
 from brdfkit.inverse.photographs.capture.pictures.masks import read_mask
+from brdfkit.inverse.photographs.capture.pictures.photograph_file import has_photograph_suffix
 
 NAME = "a series with a chrome ball"
 LIGHTS, CHROME = "lights.txt", "chrome"
@@ -41,20 +42,29 @@ def find_listing(folder: Path) -> Listing | None:
 
 
 def _read_series(folder: Path) -> tuple[tuple[Path, ...], Path] | None:
-    """Return the photographs and the mask that the text file of a folder lists, None without it."""
-    path = folder / f"{folder.name}.txt"
-    if not path.is_file():
-        return None
-    lines = [" ".join(words) for words in read_words(path)]
-    if len(lines) < 2 or not lines[0].isdigit():
-        return None
-    *names, mask = lines[1:]
-    if len(names) != int(lines[0]):
+    """Return the photographs and the mask that a text file of a folder lists, None without one."""
+    own = folder / f"{folder.name}.txt"
+    files = [own] if own.is_file() else sorted(folder.glob("*.txt"))
+    for path in files:
+        lines = [" ".join(words) for words in read_words(path)]
+        names = lines[1:]
+        if lines and lines[0].isdigit() and names and all(map(has_photograph_suffix, names)):
+            return _find_files(folder, path, int(lines[0]), names)
+    return None
+
+
+def _find_files(
+    folder: Path, path: Path, count: int, names: list[str]
+) -> tuple[tuple[Path, ...], Path]:
+    """Return `count` photographs and the mask with the `names` that the file at `path` lists."""
+    if len(names) != count + 1:
         raise BrdfkitError(
-            f"{path}: its first line promises {lines[0]} photographs, and {len(names)} names "
+            f"{path}: its first line promises {count} photographs, and {len(names) - 1} names "
             "follow before that of the mask; mend the number or the names."
         )
-    return tuple(require_file(folder / name) for name in names), require_file(folder / mask)
+    return tuple(require_file(folder / name) for name in names[:-1]), require_file(
+        folder / names[-1]
+    )
 
 
 def _find_directions(folder: Path, count: int) -> tuple[Path, FloatArray, tuple[str, ...]]:

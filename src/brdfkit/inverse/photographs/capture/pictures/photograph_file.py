@@ -28,8 +28,13 @@ class EightBitError(BrdfkitError):
 
 
 def is_photograph(path: Path) -> bool:
-    """Return whether the suffix of a file is that of a photograph."""
-    return path.suffix.lower() in SUFFIXES and not path.name.startswith(".") and path.is_file()
+    """Return whether a file is there, and is a photograph by its suffix."""
+    return has_photograph_suffix(path.name) and not path.name.startswith(".") and path.is_file()
+
+
+def has_photograph_suffix(name: str) -> bool:
+    """Return whether the name of a file ends in the suffix of a photograph."""
+    return name.lower().endswith(SUFFIXES)
 
 
 def list_photographs(folder: Path) -> tuple[Path, ...]:
