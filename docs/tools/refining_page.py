@@ -34,7 +34,8 @@ mi.render(found.put_into("scene.xml"))  # the whole scene, with all that was fou
   without `.value` at the end: `print` it to see them. None given, all numbers of brdfkit's models
   are searched. Bounds go with them: `{{"ball.bsdf.alpha_u": (0.05, 0.4)}}`.
 - **Pictures**: one for each sensor of the scene, in their order and of their size. A scene of two
-  sensors takes `[one, other]`.
+  sensors takes `[one, other]`. With `lights`, any number of pictures
+  [under lamps of their own](how_to/material_from_a_photograph.md#photographs-under-several-lamps).
 - **Units** of lamps are those of the pictures: what is twice as bright in the file has twice the
   radiance.
 - **Pixels that the scene cannot explain**, as of a hand or of what stands behind, are left out by a

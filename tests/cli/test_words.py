@@ -39,6 +39,7 @@ COMMANDS = {
     "samplers": ([compare_samplers], set()),
     "shadows": ([compare_shadows], set()),
     "svbrdf": ([bk.photographs.svbrdf], {"folder"}),
+    "refine": ([bk.refine], set()),
     "reproduce": ([bk.reproduce], set()),
 }
 

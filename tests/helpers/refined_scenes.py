@@ -116,3 +116,44 @@ def knot(mi, alpha, diffuse, size=16):
         "ball": make_grid_mesh(*make_knot_tube(), bsdf),
         "lamp": {"type": "sphere", "center": [1.5, -3, 4], "radius": 0.05, "emitter": lamp},
     }
+
+
+LAMPS = "point", "spot", "sun", "panel"
+
+
+def lamps(mi):
+    """A lamp of each kind: a point, a spot light, a distant one and a rectangle."""
+    at = mi.ScalarTransform4f
+
+    def white(strength):
+        return {"type": "rgb", "value": [strength] * 3}
+
+    above = at().look_at([0, -1, 2.8], [0, 0, 0.7], [0, 1, 0]).scale(0.3)
+    aside = at().look_at([-1.5, -2, 2.6], [0, 0, 0.6], [0, 0, 1])
+    return {
+        "point": {"type": "point", "position": [1.2, -2.2, 2.4], "intensity": white(9)},
+        "spot": {"type": "spot", "to_world": aside, "intensity": white(14), "cutoff_angle": 30},
+        "sun": {"type": "directional", "direction": [0.3, 0.8, -1], "irradiance": white(2)},
+        "panel": {
+            "type": "rectangle",
+            "to_world": above,
+            "emitter": {"type": "area", "radiance": white(20)},
+        },
+    }
+
+
+def under_lamps(mi, values=TRUTH, size=16, **more):
+    """A ball on a floor with the lamps of `lamps`."""
+    entries = corner(mi, values, size=size)
+    del entries["wall"], entries["lamp"]
+    return {**entries, **lamps(mi), **more}
+
+
+def shoot(mi, scene, burning, sensor=0, spp=512):
+    """The picture under some of the lamps alone, with noise of 1 %."""
+    lit = {name: entry for name, entry in scene.items() if name not in LAMPS or name in burning}
+    if "panel" not in burning:  # which still casts a shadow
+        lit["panel"] = {**scene["panel"], "emitter": {"type": "area", "radiance": 0.0}}
+    loaded, rng = mi.load_dict(lit), np.random.default_rng(len(burning) + sensor)
+    clean = np.array(mi.render(loaded, sensor=sensor, spp=spp, seed=LAMPS.index(burning[0])))
+    return clean * (1 + 0.01 * rng.standard_normal(clean.shape))

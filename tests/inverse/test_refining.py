@@ -567,7 +567,7 @@ def test_a_look_shows_what_was_given_beside_what_was_found(mi, picture):
     assert not found[~mask].any()
     assert look.psnr()["found"] > 20
     assert result._repr_html_().count("<img") == 1
-    with pytest.raises(bk.BrdfkitError, match="sensor = 1 should be 0 to 0"):
+    with pytest.raises(bk.BrdfkitError, match="picture = 1 should be 0 to 0"):
         result.look(1)
     grey = bk.refine(corner(mi, TRUTH), picture, parameters=[name], starts=1, spp=4, steps=1)
     assert pickle.loads(pickle.dumps(grey)).look().pictures.keys() == {"given", "found"}

@@ -6,6 +6,7 @@ from __future__ import (
 
 import time
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import nullcontext
 from dataclasses import replace
 from typing import Any, TypeAlias
 
@@ -18,9 +19,11 @@ from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress, make_step_counter
+from brdfkit.inverse.scenes.problem.by_picture import Cameras, Pictures, choose_sensors
+from brdfkit.inverse.scenes.problem.lamps import Lighting, Lights
 from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_unknowns
 from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
-from brdfkit.inverse.scenes.problem.targets import Pictures, Target, read_targets
+from brdfkit.inverse.scenes.problem.targets import Target, read_targets
 from brdfkit.inverse.scenes.problem.unseen_parameters import make_no_effect_error
 from brdfkit.inverse.scenes.problem.views import Views, suppress_sampler_warnings
 from brdfkit.inverse.scenes.result.conclusions import make_refinement
@@ -53,6 +56,8 @@ def refine(
     parameters: Iterable[str] | Bounds | None = None,
     starts: int | None = None,
     steps: int | None = None,
+    lights: Lights | None = None,
+    cameras: Cameras | None = None,
     smoothness: float | None = None,
     spp: int = 1024,
     mask: Pictures | None = None,
@@ -76,14 +81,15 @@ def refine(
         as ``prb``, ``prbvolpath`` and those of brdfkit do; ``path`` and ``volpath`` are replaced by
         the first two. A `mitsuba.Scene` ends with the values that were found;
         `Refinement.put_into` writes them into other scenes.
-    pictures : ndarray or path, or several
-        A picture for each sensor of the scene: linear values (height, width, channels), or an
-        OpenEXR file.
+    pictures : ndarray or path, several of them, or a dict of names to them
+        A picture for each sensor of the scene, or with `lights` any number of them: linear values
+        (height, width, channels), or an OpenEXR file. Names are for `lights`, `cameras` and `mask`.
     parameters : names, or dict of names to (low, high), default all of brdfkit's models
         The parameters to search, by their names in `mitsuba.traverse`, with or without ``.value``
-        at the end: numbers, colours, and ``.data``, the texels of textures, environment maps and
-        volumes. The default bounds are those of a model's parameter, 0 to 1 for shares and
-        roughnesses of Mitsuba's BSDFs, and otherwise 0 to infinity.
+        at the end: numbers, colours, ``.data``, the texels of textures, environment maps and
+        volumes, and ``.to_world`` of lamps, whose three numbers are a position, or the direction in
+        which a distant lamp shines. The default bounds are those of a model's parameter, 0 to 1 for
+        shares and roughnesses of Mitsuba's BSDFs, and otherwise 0 to infinity.
     starts : int, optional
         The number of starting points: the scene's own values, and others spread over the bounds of
         the numbers in which pictures are not linear. The default is 8 points for each such number,
@@ -92,6 +98,13 @@ def refine(
         The largest number of steps after the choice of the starting point, at least 1. The default
         is 30; numbers that trade off, such as those of two lobes, need most of them. With textures,
         the limit holds for the short steps of L-BFGS-B in each of three stages.
+    lights : dict of names of pictures to names of lamps, optional
+        The lamps of the scene that burned in each picture; all others are off in it. A lamp is
+        named as in `mitsuba.traverse`, or by its shape. Or several lists of lamps, in the order of
+        the pictures. By default all lamps burn in all pictures.
+    cameras : dict of names of pictures to ids of sensors, optional
+        The sensor that took each picture. By default that is the only sensor, or the one with the
+        picture's name as its id, or else the sensors in their order.
     smoothness : float, optional
         For textures and volumes: the weight, at least 0, of the mean squared difference of
         neighbouring texels in the loss; more is smoother. The unit of texels is their range, or
@@ -102,10 +115,11 @@ def refine(
         in proportion to it; 128 or 256 are a good beginning. The search uses half of the samples
         and checks its end with all of them; if the check disagrees, the search goes on with all,
         and the check uses twice as many.
-    mask : ndarray or path, or several, optional
+    mask : ndarray or path, several of them, or a dict of names of pictures to them, optional
         The pixels of each picture that count: booleans or weights ≥ 0 (height, width), or a picture
         file that is white there; None for a picture that counts everywhere. Masked pixels may hold
         anything. An alpha channel is ignored unless it is passed as ``mask=picture[..., 3]``.
+        Clipped pixels, three or more that equal the largest value of their channel, never count.
     accept_8_bit : bool, default False
         Whether to accept pictures of 8 bits, by inverting sRGB's curve.
     seed : int, default 0
@@ -124,13 +138,19 @@ def refine(
     BrdfkitError
         For a scene that does not load, an integrator without derivatives, pictures that do not fit
         the cameras, have 8 bits or are not finite, masks that do not fit the pictures, unknown
-        parameters, a negative smoothness, textures of integers, and parameters without any effect
-        on the pictures.
+        parameters, lamps or cameras, a picture in which no lamp burns, a negative smoothness,
+        textures of integers, and parameters without any effect on the pictures.
 
     Examples
     --------
     >>> alpha = ["ball.bsdf.alpha_u"]
     >>> result = refine("cornell.xml", "photograph.exr", parameters=alpha)    # doctest: +SKIP
+
+    Photographs under one lamp each:
+
+    >>> photographs = {"left": "left.exr", "right": "right.exr"}
+    >>> lights = {"left": "lamp_1", "right": "lamp_2"}
+    >>> result = refine("dome.xml", photographs, lights=lights)    # doctest: +SKIP
     """
     began = time.perf_counter()
     variant = use_variant()
@@ -145,7 +165,26 @@ def refine(
         to_whole_number("refine: starts", starts, 1)
     if smoothness is not None:
         to_number("refine: smoothness", smoothness, least=0)
-    views = _make_views(scene, read_targets(pictures, accept_8_bit, mask), parameters)
+    targets = read_targets(pictures, accept_8_bit, mask)
+    views = _make_views(scene, targets, parameters, lights, cameras)
+    with views.lighting.restored_after_errors() if views.lighting else nullcontext():
+        return _search(views, starts, steps, smoothness, spp, seed, progress, began)
+
+
+def _search(
+    views: Views,
+    starts: int | None,
+    steps: int,
+    smoothness: float | None,
+    spp: int,
+    seed: int,
+    progress: Progress | None,
+    began: float,
+) -> Refinement:
+    """Search the parameters of `views`, with the arguments of `refine`; return the result.
+
+    `began` is the time at which `refine` was called.
+    """
     by_descent = len(views.start) > PARAMETER_LIMIT or any(u.shape for u in views.unknowns)
     seed_of_search = seed + 100
     try:
@@ -206,13 +245,17 @@ def _search_visible_numbers(
 def _make_views(
     scene: Any,
     targets: list[Target],
-    parameters: Iterable[str] | Mapping[str, tuple[float, float] | None] | None,
+    parameters: Iterable[str] | Bounds | None,
+    lights: Lights | None,
+    cameras: Cameras | None,
 ) -> Views:
     """Return the scene, its searched parameters and its target pictures as `Views`."""
     import mitsuba as mi
 
     loaded = load_scene(scene, targets[0].size)
-    traversed = mi.traverse(loaded)
+    traversed, names = mi.traverse(loaded), tuple(target.name for target in targets)
+    lighting = None if lights is None else Lighting(traversed, lights, names)
+    sensors = choose_sensors(loaded, names, cameras, lighting is not None)
     unknowns = choose_unknowns(traversed, parameters)
     numbers = sum(len(unknown.start) for unknown in unknowns)
     values = sum(np.count_nonzero(target.weights) for target in targets)
@@ -221,4 +264,5 @@ def _make_views(
             f"refine: {numbers} numbers are more than the {values} values of the pictures that "
             "count; give larger pictures, or name fewer."
         )
-    return Views(loaded, make_integrator(loaded), targets, traversed, unknowns)
+    integrator = make_integrator(loaded)
+    return Views(loaded, integrator, targets, traversed, unknowns, sensors, lighting)

@@ -19,15 +19,16 @@ SMALLEST_REMAINDER = 0.05
 Blocks = tuple[IntArray, int]  # the block of each pixel (pixels,), and the number of blocks
 
 
-def group_pixels_by_block(scene: MitsubaObject, counted: BoolArray) -> Blocks:
-    """Group the pixels of all sensors into square blocks as wide as the camera's filter.
+def group_pixels_by_block(sensors: list[MitsubaObject], counted: BoolArray) -> Blocks:
+    """Group the pixels of all pictures into square blocks as wide as the camera's filter.
 
-    The filter correlates the noise of pixels within a block. Returns the block of each pixel
-    (pixels,), and the number of blocks. Only blocks with a `counted` pixel are numbered; pixels of
-    other blocks, whose weight is 0, are assigned to block 0.
+    `sensors` holds the camera of each picture, whose filter correlates the noise of pixels within a
+    block. Returns the block of each pixel (pixels,), and the number of blocks. Only blocks with a
+    `counted` pixel are numbered; pixels of other blocks, whose weight is 0, are assigned to block
+    0.
     """
     parts, count = [], 0
-    for sensor in scene.sensors():
+    for sensor in sensors:
         width, height = sensor.film().crop_size()
         side = find_block_side(sensor)
         rows, columns = np.arange(height) // side, np.arange(width) // side

@@ -9,6 +9,7 @@ import numpy as np
 from brdfkit.core.arguments import to_number_pair
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such_error
+from brdfkit.inverse.scenes.problem.places import Place, find_place, is_position_of_point_lamp
 from brdfkit.inverse.scenes.problem.scene_parameters import (
     find_default_bounds,
     find_owner_model,
@@ -54,6 +55,8 @@ class Unknown:
     texels : the index of the number that each texel of a tensor holds; None for other entries.
     wraps : whether the last column of a tensor is a neighbour of its first one.
     has_wrong_derivatives : whether Mitsuba's derivatives with respect to this entry are wrong.
+    is_place : whether the numbers are the position of a lamp, or the direction of its light.
+    place : what the numbers are within a lamp's `to_world`; None for other entries.
     """
 
     key: str
@@ -71,13 +74,16 @@ class Unknown:
     texels: IntArray | None = None
     wraps: bool = False
     has_wrong_derivatives: bool = False
+    is_place: bool = False
+    place: Place | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
         """A name for each number of the entry, such as "bsdf.alpha" or "bsdf.reflectance[0]"."""
         if len(self.start) == 1:
             return (self.name,)
-        return tuple(f"{self.name}[{i}]" for i in range(len(self.start)))
+        components = self.place.free if self.place else range(len(self.start))
+        return tuple(f"{self.name}[{i}]" for i in components)
 
     def to_values(self, coordinates: FloatArray) -> FloatArray:
         """Return the numbers (n,) of the entry at their search coordinates."""
@@ -110,6 +116,18 @@ class Unknown:
             return derivatives
         sums: AnyArray = np.bincount(self.texels.ravel(), derivatives, len(self.start))
         return sums
+
+    def find_scale(self, sight: FloatArray | None) -> float:
+        """Return how much a coordinate has to change for other pictures, for the place of a lamp.
+
+        That is its distance from the point `sight` (3,) that the cameras see, or a radian for a
+        direction; 1 for other entries.
+        """
+        if not self.is_place:
+            return 1.0
+        is_direction = self.place is not None and self.place.axis is not None
+        away = 1.0 if is_direction or sight is None else float(np.linalg.norm(self.start - sight))
+        return (away or 1.0) / (self.high - self.low if self.is_bounded else 1.0)
 
     @property
     def is_bounded(self) -> bool:
@@ -166,7 +184,9 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
     texels: IntArray | None = None
     shape: tuple[int, ...] = ()
     wraps = False
-    numbers = read_entry_numbers(value)
+    place = find_place(parameters, key)
+    is_place = place is not None or is_position_of_point_lamp(parameters, key)
+    numbers = place.start if place else read_entry_numbers(value)
     if numbers is None:
         texels, wraps = index_numbers_by_texel(parameters, key), is_environment_map(parameters, key)
         shape, numbers = find_independent_shape(texels, wraps), read_tensor(value, texels)
@@ -176,7 +196,7 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
         low, high = widest = declared.bounds
         is_log, is_linear = declared.log, declared.linear
     else:
-        low = -np.inf if kind.startswith(("Point", "Vector")) else 0.0
+        low = -np.inf if place or kind.startswith(("Point", "Vector")) else 0.0
         low, high = find_default_bounds(parameters, key, (low, np.inf))
         # Only a roughness has a lower bound above 0; its logarithm is searched
         is_log, is_linear = low > 0, kind.startswith("Color")
@@ -199,7 +219,9 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
         shape,
         texels,
         wraps,
-        has_wrong_derivatives(parameters, key),
+        is_place or has_wrong_derivatives(parameters, key),
+        is_place,
+        place,
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such_error
+from brdfkit.inverse.scenes.problem.places import find_place
 from brdfkit.inverse.scenes.problem.tensors import (
     find_independent_shape,
     index_numbers_by_texel,
@@ -38,11 +39,13 @@ WRONG_DERIVATIVES = {"RoughPlastic": ("alpha", "eta"), "SmoothPlastic": ("diffus
 
 
 def find_searchable_entries(parameters: MitsubaObject) -> dict[str, str]:
-    """Return the keys of all numbers, colours, vectors and tensors of a scene, by short name."""
+    """Return the keys of numbers, colours, vectors, tensors and lamps' places, by short name."""
     return {
         shorten_key(key): key
         for key in parameters.properties
-        if read_entry_numbers(parameters[key]) is not None or is_tensor(parameters[key])
+        if read_entry_numbers(parameters[key]) is not None
+        or is_tensor(parameters[key])
+        or find_place(parameters, key)
     }
 
 
@@ -112,6 +115,8 @@ def write_scene_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
 def _convert_to_entry_type(parameters: MitsubaObject, key: str, value: Any) -> MitsubaObject:
     """Convert a float, a tuple or an array to the Mitsuba type of the entry `key`."""
     kind = type(parameters[key])
+    if place := find_place(parameters, key):
+        return place.make_transform(np.array(value))
     if not isinstance(value, np.ndarray):
         return kind(*value) if isinstance(value, tuple) else kind(value)
     texels = index_numbers_by_texel(parameters, key)

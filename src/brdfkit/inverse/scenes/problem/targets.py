@@ -1,6 +1,6 @@
 """Reads the pictures that `refine` has to match, and weighs their pixels."""
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,30 +11,34 @@ from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
+from brdfkit.inverse.scenes.problem.by_picture import Pictures, arrange_by_picture, name_pictures
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph, read_pixels
 
 # Share of the mean brightness that is added to pixels before weights are computed, so that weights
 # of dark pixels stay finite
 DARK_OFFSET = 0.02
 WHITE_QUANTILE = 0.99  # quantile of a picture's values that counts as its white level
-# a picture counts as clipped if more than this share of values equals the largest one
-CLIPPED_SHARE = 1e-3
-
-Pictures = FloatArray | str | Path | Iterable[FloatArray | str | Path]
+# Least white level of a picture, as a share of that of the brightest one; without it, the noise of
+# a picture that is nearly black would count more than all other pictures
+DARKEST_WHITE = 0.1
+# So many values that equal the largest one of their channel are clipped; noise does not repeat
+FEWEST_CLIPPED = 3
 
 
 @dataclass(frozen=True)
 class Target:
     """A picture to match.
 
+    name : the picture's name, or its number as text.
     pixels : linear values (height, width, channels).
     weights : the weight of each squared difference, in the same shape; 0 where the pixel is masked
-        or clipped.
+        or clipped, and everywhere in a picture that is black.
     count : the number of values that are not clipped, as the sum of their mask.
     clipped : the share of values that are clipped.
     unmasked : the mask (height, width) of pixels that count.
     """
 
+    name: str
     pixels: FloatArray
     weights: FloatArray
     count: float
@@ -46,30 +50,44 @@ class Target:
         """The width and height of the picture in pixels."""
         return self.pixels.shape[1], self.pixels.shape[0]
 
+    @property
+    def is_black(self) -> bool:
+        """Whether the picture is black, so that it tells no more than a flash that failed."""
+        return not self.pixels.any()
 
-def read_targets(
-    pictures: Pictures, accept_8_bit: bool = False, mask: Pictures | None = None
-) -> list[Target]:
+
+def read_targets(pictures: Pictures, accept_8_bit: bool = False, mask: Any = None) -> list[Target]:
     """Return the `Target`s of one or several pictures, arrays (height, width[, channels]) or paths.
 
     `mask` has the weights of the pixels, see `read_masks`. Raises `BrdfkitError` for what is not a
-    picture, for pixels that are not finite, and for pictures of 8 bits unless `accept_8_bit`, which
-    inverts sRGB's curve.
+    picture, for pixels that are not finite, for pictures of 8 bits unless `accept_8_bit`, which
+    inverts sRGB's curve, and if all pictures are black.
     """
-    value: Any = pictures
-    alone = isinstance(value, str | Path) or getattr(value, "ndim", 4) < 4
-    several = [value] if alone else list(value)
-    if not several:
-        raise BrdfkitError("there is no picture to match; give one for each sensor.")
-    masks = read_masks(mask, len(several))
+    named = name_pictures(pictures)
+    is_named = isinstance(pictures, Mapping)
+    labels = {name: name if is_named else f"picture {name}" for name in named}
+    masks = read_masks(mask, tuple(named))
+    read = [
+        _read_picture(picture, labels[name], accept_8_bit, mask)
+        for (name, picture), mask in zip(named.items(), masks, strict=True)
+    ]
+    whites = [float(find_white_level(pixels[share > 0])) for pixels, share in read]
+    if not max(whites) > 0:
+        which = f"{labels[next(iter(named))]}: it is" if len(read) == 1 else "all pictures are"
+        raise BrdfkitError(f"{which} black; nothing can be learned from it.")
     return [
-        _read_target(one, f"picture {number}", accept_8_bit, mask)
-        for number, (one, mask) in enumerate(zip(several, masks, strict=True))
+        _make_target(name, pixels, share, max(white, DARKEST_WHITE * max(whites)))
+        for name, (pixels, share), white in zip(named, read, whites, strict=True)
     ]
 
 
-def _read_target(picture: Any, name: str, accept_8_bit: bool, mask: FloatArray | None) -> Target:
-    """Return the `Target` of one picture; `name` is its name in errors."""
+def _read_picture(
+    picture: Any, name: str, accept_8_bit: bool, mask: FloatArray | None
+) -> tuple[FloatArray, FloatArray]:
+    """Return linear pixels (height, width, channels) and their mask (height, width).
+
+    `name` is the picture's name in errors. Masked pixels are 0.
+    """
     if isinstance(picture, str | Path):
         picture, name = read_photograph(picture, accept_8_bit), str(picture)
     pixels: FloatArray = np.asarray(picture)
@@ -97,14 +115,18 @@ def _read_target(picture: Any, name: str, accept_8_bit: bool, mask: FloatArray |
     finite = np.isfinite(pixels).all(axis=2)
     if not finite.all():
         raise BrdfkitError(f"{name}: {(~finite).sum():,} of its pixels are not finite.")
-    if not pixels.max() > 0:
-        raise BrdfkitError(f"{name}: it is black; nothing can be learned from it.")
-    share = np.broadcast_to(mask[..., None], pixels.shape)
+    return pixels, mask
+
+
+def _make_target(name: str, pixels: FloatArray, mask: FloatArray, white: float) -> Target:
+    """Return the `Target` of linear pixels with their mask (height, width) and white level."""
+    share = np.broadcast_to(mask[..., None], pixels.shape) * float(pixels.any())
     clipped = _find_clipped(pixels, share > 0)
     share = np.where(clipped, 0, share)
     return Target(
+        name,
         pixels,
-        share * _weigh_pixels(pixels, mask > 0),
+        share * _weigh_pixels(pixels, mask > 0, white),
         share.sum(),
         float(clipped.sum() / (pixels.shape[2] * np.count_nonzero(mask))),
         mask > 0,
@@ -112,25 +134,29 @@ def _read_target(picture: Any, name: str, accept_8_bit: bool, mask: FloatArray |
 
 
 def _find_clipped(pixels: FloatArray, counted: BoolArray) -> BoolArray:
-    """Return the mask of `counted` values that are clipped at the largest value of the camera."""
-    at_end = counted & (pixels == pixels.max())
-    many = at_end.sum() > max(8, CLIPPED_SHARE * counted.sum())
-    return at_end if many else np.zeros_like(at_end)
+    """Return the mask of `counted` values that are clipped at the largest value of the camera.
+
+    Each channel is clipped at a value of its own, because a white balance scales the channels.
+    """
+    largest = np.where(counted, pixels, 0).max(axis=(0, 1))
+    at_end: BoolArray = counted & (pixels == largest) & (largest > 0)
+    return at_end & (at_end.sum(axis=(0, 1)) >= FEWEST_CLIPPED)
 
 
-def _weigh_pixels(pixels: FloatArray, unmasked: BoolArray) -> FloatArray:
+def _weigh_pixels(pixels: FloatArray, unmasked: BoolArray, white: float) -> FloatArray:
     """Return the weight of each squared difference of a rendered pixel, in the shape of `pixels`.
 
     The weight is the squared slope of sRGB's curve at the pixel's brightness, so that differences
-    count as they are seen on a screen; for pixels brighter than white, relative differences count.
-    The curve itself would bias noisy renderings, but its slope at the target picture does not.
-    White level and means are taken over the `unmasked` pixels (height, width).
+    count as they are seen on a screen; for pixels brighter than `white`, relative differences
+    count. The curve itself would bias noisy renderings, but its slope at the target picture does
+    not. Means are taken over the `unmasked` pixels (height, width).
     """
-    white = find_white_level(pixels[unmasked])
     x = (_average_neighbours(pixels, unmasked) + DARK_OFFSET * pixels[unmasked].mean()) / white
     shown = np.minimum(x, 1)
-    slope = np.where(shown <= 0.0031308, 12.92, 1.055 / 2.4 * shown ** (1 / 2.4 - 1))
-    return (slope / (white * np.maximum(x, 1))) ** 2
+    curved = 1.055 / 2.4 * np.maximum(shown, 0.0031308) ** (1 / 2.4 - 1)
+    slope = np.where(shown <= 0.0031308, 12.92, curved)
+    weight: FloatArray = (slope / (white * np.maximum(x, 1))) ** 2
+    return weight
 
 
 def find_white_level(pixels: AnyArray) -> Any:
@@ -153,27 +179,26 @@ def _average_neighbours(pixels: FloatArray, unmasked: BoolArray) -> FloatArray:
     return np.maximum(total / np.maximum(share, 1 / 25), 0)
 
 
-def read_masks(mask: Any, count: int) -> list[FloatArray | None]:
-    """Return a mask (height, width) of weights for each of `count` pictures, or None without masks.
+def read_masks(mask: Any, names: tuple[str, ...]) -> list[FloatArray | None]:
+    """Return a mask (height, width) of weights for each of the pictures `names`, or None.
 
-    `mask` is None, an array or a path if there is one picture, or a sequence of these. Raises
-    `BrdfkitError` for a wrong number of masks, and for a mask that is not a picture of weights ≥ 0,
-    or is 0 everywhere.
+    `mask` is None, an array or a path if there is one picture, or a sequence or mapping of these.
+    Raises `BrdfkitError` for a wrong number of masks, and for a mask that is not a picture of
+    weights ≥ 0, or is 0 everywhere.
     """
     if mask is None:
-        return [None] * count
-    alone = isinstance(mask, str | Path) or (count == 1 and isinstance(mask, np.ndarray))
-    several = [mask] if alone else list(mask)
-    if len(several) != count:
-        raise BrdfkitError(
-            f"refine: there should be one mask for each picture: {len(several)} for {count}."
-        )
-    return [None if one is None else _read_mask(one, number) for number, one in enumerate(several)]
+        return [None] * len(names)
+    alone = isinstance(mask, str | Path) or (len(names) == 1 and isinstance(mask, np.ndarray))
+    several = arrange_by_picture("mask", "mask", [mask] if alone else mask, names)
+    return [
+        None if one is None else _read_mask(one, name)
+        for name, one in zip(names, several, strict=True)
+    ]
 
 
-def _read_mask(value: Any, number: int) -> FloatArray:
-    """Return a mask (height, width) from an array or a path; `number` names it in errors."""
-    name = f"refine: mask {number}"
+def _read_mask(value: Any, name: str) -> FloatArray:
+    """Return a mask (height, width) from an array or a path; the picture's `name` is in errors."""
+    name = f"refine: mask {name}"
     if isinstance(value, str | Path):
         name = str(value)
         value = read_pixels(require_file(value), name).mean(axis=2)

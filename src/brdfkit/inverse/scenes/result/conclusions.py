@@ -7,6 +7,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.version import find_versions
 from brdfkit.inverse.scenes.problem.parameters import Unknown
+from brdfkit.inverse.scenes.problem.places import add_dependent_components
 from brdfkit.inverse.scenes.problem.scene_parameters import read_model_values
 from brdfkit.inverse.scenes.problem.unseen_parameters import describe_zero_weights
 from brdfkit.inverse.scenes.problem.views import Views
@@ -35,9 +36,10 @@ def make_refinement(
     certainty = estimate_certainty(views, state, noise)
     x = here.x if x is None else x
     views.write_to_scene(x)
-    values = {
-        unknown.name: _to_result_value(unknown, part)
-        for unknown, part in zip(views.unknowns, views.to_values(x), strict=True)
+    parts = list(zip(views.unknowns, views.to_values(x), strict=True))
+    values = {unknown.name: _to_result_value(unknown, part) for unknown, part in parts}
+    directions = {
+        u.name: (u.place, part) for u, part in parts if u.place and u.place.axis is not None
     }
     result = Refinement(
         values=values,
@@ -56,12 +58,14 @@ def make_refinement(
             *certainty.undetermined,
             *certainty.trades,
             *describe_zero_weights(views, certainty.names),
+            *_describe_lighting(views),
             *_describe_clipping(views),
             *_describe_rendering_noise(views, here),
             *_describe_residuals(state, noise),
         ),
-        certainty=certainty,
+        certainty=add_dependent_components(certainty, directions),
         fits={},
+        names=tuple(target.name for target in views.targets),
         targets=tuple(np.where(t.unmasked[..., None], t.pixels, np.nan) for t in views.targets),
         pictures=tuple(views.split_pictures((here.a + here.b) / 2 + views.target_pixels)),
     )
@@ -69,9 +73,14 @@ def make_refinement(
 
 
 def _to_result_value(unknown: Unknown, numbers: FloatArray) -> Value:
-    """Return the numbers of an unknown as an array for a tensor, else as a tuple or a float."""
+    """Return the numbers of an unknown as an array for a tensor, else as a tuple or a float.
+
+    The place of a lamp is a tuple (3,), a position or a unit direction.
+    """
     if unknown.shape:
         return np.array(numbers).reshape(unknown.shape)
+    if unknown.place:
+        numbers = unknown.place.to_vector(numbers)
     return tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
 
 
@@ -143,15 +152,29 @@ def _explain_end(state: Search, interrupted: bool) -> str:
     return f"stopped after {state.steps} steps: more of them may gain"
 
 
+def _describe_lighting(views: Views) -> tuple[str, ...]:
+    """Return a sentence on lamps that burn in no picture, if there are any."""
+    unused = views.lighting.unused if views.lighting else ()
+    several = "" if len(unused) > 1 else "s"
+    return (f"{', '.join(unused)} burn{several} in no picture",) if unused else ()
+
+
 def _describe_clipping(views: Views) -> tuple[str, ...]:
-    """Return a sentence on clipped pixels of the given pictures, if there are any."""
-    clipped = [target.clipped for target in views.targets]
-    if max(clipped) == 0:
-        return ()
-    return (
-        f"{100 * np.mean(clipped):.2g} % of the pixels are clipped, at the largest number of their "
-        "picture; they do not count",
-    )
+    """Return sentences on black pictures and clipped pixels of the given ones, if there are any."""
+    black = [target.name for target in views.targets if target.is_black]
+    full = [t.name for t in views.targets if not t.count and not t.is_black]
+    clipped = np.mean([target.clipped for target in views.targets])
+    notes = []
+    for names, state in ((black, "black"), (full, "clipped")):
+        if names:
+            one, end = ("picture", "does") if len(names) == 1 else ("pictures", "do")
+            notes.append(f"{one} {', '.join(names)}: {state} throughout, so {end} not count")
+    if clipped:
+        notes.append(
+            f"{100 * clipped:.2g} % of the pixels are clipped, at the largest number of their "
+            "picture; they do not count"
+        )
+    return tuple(notes)
 
 
 def _describe_rendering_noise(views: Views, here: Residuals) -> tuple[str, ...]:

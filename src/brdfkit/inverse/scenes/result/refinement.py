@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.documents import Document, Shown
-from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.inverse.scenes.problem.targets import find_white_level
 from brdfkit.inverse.scenes.result.summary import describe_refinement
 from brdfkit.regression import Fit
@@ -28,7 +28,8 @@ class Refinement(Shown):
     values : dict of str to float, tuple or ndarray
         The values that were found, by the names of `mitsuba.traverse` without ``.value`` at the
         end. A colour or a vector is a tuple; a texture is an array (height, width, channels), a
-        volume an array (depth, height, width, channels).
+        volume an array (depth, height, width, channels). The ``to_world`` of a lamp is a tuple
+        (x, y, z), its position, or the unit direction in which a distant lamp shines.
     loss : float
         The RMS difference E between rendered and given pixels, in shares of white (the brightest
         hundredth). Differences are weighted by the slope of sRGB's curve, as a screen shows them,
@@ -59,10 +60,12 @@ class Refinement(Shown):
     fits : dict of str to Fit
         A fit for each of brdfkit's models in the scene whose parameters were searched, by the name
         of its BSDF in the scene.
+    names : tuple of str
+        The names of the pictures, or their numbers, from "0" on.
     pictures : tuple of ndarray
-        The last rendering of each sensor, (height, width, channels).
+        The last rendering of each picture, (height, width, channels), under its own lamps.
     targets : tuple of ndarray
-        The given picture of each sensor, in linear values; NaN where it is masked.
+        The given pictures, in linear values; NaN where they are masked.
 
     Notes
     -----
@@ -92,6 +95,7 @@ class Refinement(Shown):
     notes: tuple[str, ...]
     certainty: Certainty
     fits: dict[str, Fit]
+    names: tuple[str, ...]
     pictures: tuple[FloatArray, ...] = field(compare=False)
     targets: tuple[FloatArray, ...] = field(compare=False)
 
@@ -127,13 +131,13 @@ class Refinement(Shown):
         """The correlation matrix (n, n) of the values in ``certainty.names``."""
         return self.certainty.compute_correlation()
 
-    def look(self, sensor: int = 0) -> Rendering:
-        """Return the given and the rendered picture of a sensor, to compare them.
+    def look(self, picture: int | str = 0) -> Rendering:
+        """Return a given picture and the rendered one, to compare them.
 
         Parameters
         ----------
-        sensor : int, default 0
-            The number of the sensor.
+        picture : int or str, default 0
+            The number of the picture, or its name.
 
         Returns
         -------
@@ -141,27 +145,31 @@ class Refinement(Shown):
             Both pictures in units of white, the brightest hundredth of the given one; masked pixels
             are black. A notebook shows them above their colour difference (CIEDE2000); ``write``
             makes a PNG or EXR file, and ``errors`` computes error measures. A notebook shows a
-            `Refinement` with the comparisons of all sensors.
+            `Refinement` with the comparisons of all pictures.
 
         Raises
         ------
         BrdfkitError
-            For a sensor that does not exist.
+            For a picture that does not exist.
 
         Examples
         --------
         >>> result.look().write("look.png")    # doctest: +SKIP
         """
-        if not 0 <= sensor < len(self.pictures):
+        if isinstance(picture, str):
+            if picture not in self.names:
+                raise no_such_error("picture", picture, self.names)
+            picture = self.names.index(picture)
+        if not 0 <= picture < len(self.pictures):
             raise BrdfkitError(
-                f"look: sensor = {sensor!r} should be 0 to {len(self.pictures) - 1}."
+                f"look: picture = {picture!r} should be 0 to {len(self.pictures) - 1}."
             )
-        target, picture = self.targets[sensor], self.pictures[sensor]
+        target, rendered = self.targets[picture], self.pictures[picture]
         unmasked = np.asarray(np.isfinite(target).all(axis=2))
         white = find_white_level(target[unmasked])
         shown = {
             name: np.where(unmasked[..., None], pixels / white, 0) * np.ones(3, np.float32)
-            for name, pixels in (("given", target), ("found", picture))
+            for name, pixels in (("given", target), ("found", rendered))
         }
         return Rendering(shown, self.samples, self.seconds, mask=unmasked)
 

@@ -54,7 +54,7 @@ class ResidualNoise:
         root = np.sqrt(views.weights)
         parts = (views.split_pictures(part) for part in (root, root * here.a, root * here.b))
         sums, near = np.zeros((2, 2 * LAGS + 1, 2 * LAGS + 1)), np.zeros(3)
-        for sensor, weights, a, b in zip(views.scene.sensors(), *parts, strict=True):
+        for sensor, weights, a, b in zip(views.sensors, *parts, strict=True):
             side, counted = find_block_side(sensor), (weights > 0).astype(float)
             a, b = _clip_outliers(a, b, counted)
             sums += _correlate_pictures(a, b, counted, side)

@@ -28,7 +28,7 @@ def describe_refinement(result: Any) -> Document:
         (
             *(Paragraph(early, kind=BAD) for _ in range(not result.converged)),
             Table(rows),
-            *(_make_comparison_picture(result, sensor) for sensor in range(len(result.pictures))),
+            *(_make_comparison_picture(result, number) for number in range(len(result.pictures))),
             *(Paragraph(note) for note in result.notes),
             Paragraph(
                 f"{result.message}; {result.steps} step{several}, the last at {result.samples} "
@@ -39,11 +39,11 @@ def describe_refinement(result: Any) -> Document:
     )
 
 
-def _make_comparison_picture(result: Any, sensor: int) -> Picture:
-    """Return the given and the rendered picture of a sensor side by side, drawn on demand."""
-    width = min(WIDEST, 2 * max(result.pictures[sensor].shape[1], TILE))
-    alt_text = f"given and found pictures {sensor}, and their difference"
-    return Picture(lambda: result.look(sensor).drawn(), alt_text, width)
+def _make_comparison_picture(result: Any, number: int) -> Picture:
+    """Return a given picture and the rendered one side by side, drawn on demand."""
+    width = min(WIDEST, 2 * max(result.pictures[number].shape[1], TILE))
+    alt_text = f"given and found pictures {result.names[number]}, and their difference"
+    return Picture(lambda: result.look(number).drawn(), alt_text, width)
 
 
 def _format_value(value: Any, error: Any) -> str:

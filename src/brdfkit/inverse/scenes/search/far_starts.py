@@ -30,6 +30,7 @@ FINALISTS, FINALIST_STEPS = 3, 2
 JUDGE_FACTOR = 2
 # How many points are tried for each searched number in which pictures are not linear
 POINTS_PER_NUMBER = 8
+PICTURES = 4  # of more pictures under lamps of their own, so many choose the start
 POINT_LIMIT = 32  # largest number of points besides the scene's own values
 
 
@@ -51,24 +52,29 @@ def find_best_start(
     if count == 1 or not nonlinear.any():
         return views.start
     points = make_start_points(views.start[None, nonlinear][0], count, seed)
-    spp = choose_initial_samples(views)
+    few = views.pick_pictures(PICTURES)
+    spp = choose_initial_samples(few)
     tried: list[Residuals] = []
     finalists: list[Residuals] = []
     try:
         for coordinates in points:
             point = views.start.copy()
             point[nonlinear] = coordinates
-            tried.append(_solve_linear_numbers(views, point, spp // 2, seed))
+            tried.append(_solve_linear_numbers(few, point, spp // 2, seed))
             report()
         tried.sort(key=lambda residuals: residuals.bound)
         for residuals in tried[:FINALISTS]:
-            end = run_gauss_newton(views, residuals.x, FINALIST_STEPS, spp, seed)
+            end = run_gauss_newton(few, residuals.x, FINALIST_STEPS, spp, seed)
             finalists.append(end.residuals)
             report()
     except KeyboardInterrupt:
         if not tried:
             raise
-        raise Interrupted(Search(_select_best_point(finalists or tried))) from None
+        best = _select_best_point(finalists or tried).x
+        raise Interrupted(Search(Residuals.render(views, best, spp, seed))) from None
+    if few is not views:
+        views.cost += few.cost * len(few.targets) / len(views.targets)
+    spp = choose_initial_samples(views)
     # New samples compare the finalists, because a finalist was chosen for being good with the old
     # ones
     candidates = [views.start, *(end.x for end in finalists)]
@@ -85,12 +91,15 @@ def _select_best_point(points: Iterable[Residuals]) -> Residuals:
 def _solve_linear_numbers(views: Views, x: FloatArray, spp: int, seed: int) -> Residuals:
     """Solve for the numbers in which pictures are linear; return the residuals at the solution.
 
-    The solution is exact for direct light.
+    The solution is exact for direct light. Lamps keep their strength if colours of materials are
+    searched, too, as pictures are linear in each of the two, but not in both.
     """
-    linear = np.nonzero(views.is_linear)[0]
+    of_materials = views.is_linear & ~views.is_lamp
+    is_solved = of_materials if of_materials.any() else views.is_linear
+    linear = np.nonzero(is_solved)[0]
     if not len(linear):
         return Residuals.render(views, x, spp, seed)
-    dark = np.where(views.is_linear, 0, x)
+    dark = np.where(is_solved, 0, x)
     (a, residuals_a), (b, residuals_b) = (
         _render_unit_changes(views, dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1)
     )
@@ -113,7 +122,8 @@ def _render_unit_changes(
     The changes are (numbers, pixels, channels); the residuals (pixels, channels) are those with all
     `numbers` at 0, which `x` must hold.
     """
-    residuals = views.render_residuals(x, spp, seed)
+    before, split = views.render_pixels(x, spp, seed), views.split_pictures
+    residuals = before - views.target_pixels
     changes = np.zeros((len(numbers), *residuals.shape), np.float32)
     rows = {number: row for row, number in enumerate(numbers)}
     for group in group_numbers_by_picture(views):
@@ -121,6 +131,8 @@ def _render_unit_changes(
             continue
         moved = np.array(x, float)
         moved[group] = 1
-        change = views.render_residuals(moved, spp, seed) - residuals
-        store_by_channel(change, changes, [rows[number] for number in group])
+        changed = views.find_changed_pictures(group)
+        change = views.render_pixels(moved, spp, seed, changed) - before
+        own = [picture if i in changed else 0 * picture for i, picture in enumerate(split(change))]
+        store_by_channel(views.join_pictures(own), changes, [rows[number] for number in group])
     return changes, residuals

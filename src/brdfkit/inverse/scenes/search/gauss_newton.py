@@ -27,7 +27,8 @@ GROWTH = 4, 16  # smallest and largest factor by which the number of samples gro
 CONVERGED_GRADIENT = 0.1
 # Largest share of E² that may be noise of the rendering; this much adds 12 % to the standard errors
 QUIET_SHARE = 0.25
-# Longest step of a number in which pictures are not linear, as a share of the number's range
+# Longest step of a number in which pictures are not linear, as a share of the number's range; for
+# the place of a lamp, as a share of its distance, or in radians
 NONLINEAR_REACH = 0.25
 # Longest step of a lobe's weight without an upper bound, as a multiple of the weight, or of 1 for
 # smaller weights
@@ -156,6 +157,7 @@ def solve_step(views: Views, here: Residuals, equations: Equations, damping: flo
     hessian, scale = equations.scale_hessian()
     damped = hessian + damping * np.eye(len(scale))
     reach = np.where(views.is_nonlinear_share, NONLINEAR_REACH, np.inf)
+    reach = np.where(views.is_place, NONLINEAR_REACH * views.scales, reach)
     reach = np.where(views.is_unlimited_weight, WEIGHT_REACH * np.maximum(abs(here.x), 1), reach)
     low = np.maximum(views.lower_bounds - here.x, -reach)
     high = np.minimum(views.upper_bounds - here.x, reach)

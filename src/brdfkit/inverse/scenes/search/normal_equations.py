@@ -34,7 +34,7 @@ from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.forward_derivatives import (
     DERIVATIVE_COST,
     compute_derivatives,
-    group_numbers_by_picture,
+    count_derivative_pictures,
 )
 
 # largest cost of rendering all derivatives, as a multiple of that of the residuals
@@ -125,8 +125,8 @@ class Equations:
         cls, views: Views, here: Residuals, seed: int, share: float = DERIVATIVE_SHARE
     ) -> Equations:
         """Render derivatives at the point of `here`, at no more than `share` of its cost."""
-        pictures = len(list(group_numbers_by_picture(views)))
-        spp = max(1, round(here.spp * min(1, share / (DERIVATIVE_COST * pictures))))
+        pictures = count_derivative_pictures(views)
+        spp = max(1, round(here.spp * min(1, share / max(DERIVATIVE_COST * pictures, 1e-9))))
         a, b = (compute_derivatives(views, here.x, spp, seed + 1000 * half) for half in (0, 1))
         _check_finite(views, a + b)
         weighed = views.weights * a
