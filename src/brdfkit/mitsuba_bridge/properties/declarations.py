@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from brdfkit.core.arguments import describe_range, is_number
 from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
@@ -186,6 +188,26 @@ def declare_texture(default: float, meaning: str) -> Setting:
         return mi.load_dict({"type": "uniform", "value": float(value)}, parallel=False)
 
     return Setting(default, None, meaning, read_texture, differentiable=True)
+
+
+def declare_normals(meaning: str) -> Setting:
+    """Declare a normal map, a texture with the components of normals, or a colour for all points.
+
+    Without one, all normals are those of the surface.
+    """
+
+    def read_normals(value: Any) -> Any:
+        import mitsuba as mi
+
+        if isinstance(value, mi.Texture):
+            return value
+        if not (value is None or is_colour(value)):
+            raise ValueError("a texture with three channels")
+        colour = [0.5, 0.5, 1.0] if value is None else list(value)
+        pixel = mi.Bitmap(np.array(colour, np.float32).reshape(1, 1, 3))
+        return mi.load_dict({"type": "bitmap", "bitmap": pixel, "raw": True}, parallel=False)
+
+    return Setting(None, None, meaning, read_normals, differentiable=True)
 
 
 def declare_phase_function(meaning: str) -> Setting:

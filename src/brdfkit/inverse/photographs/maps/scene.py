@@ -10,6 +10,10 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.model import labels
 
+# Light below the surface is lost, as in the formula of the fit, which has the same values as the
+# plugin wherever a normal faces the camera
+NORMAL_MAP = {"type": "robust_normal_map", "conserve_energy": False}
+
 
 def make_sample_dict(svbrdf: Any) -> dict[str, Any]:
     """Return the sample of an `Svbrdf` or `Maps` as a Mitsuba dictionary: a rectangle at z = 0."""
@@ -34,7 +38,7 @@ def make_bsdf_dict(svbrdf: Any) -> dict[str, Any]:
         angle = _make_bitmap_texture(maps[ANGLE]) | {"filter_type": "nearest"}
         material = {"type": "tangent_rotation", "angle": angle, "bsdf": material}
     normals = _make_bitmap_texture((maps["normal"] + 1) / 2)
-    return {"type": "normalmap", "normalmap": normals, "bsdf": material}
+    return {**NORMAL_MAP, "normalmap": normals, "bsdf": material}
 
 
 def _list_parameter_maps(maps: Iterable[str]) -> list[str]:
@@ -115,7 +119,8 @@ def format_scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
   </emitter>
   <shape type="rectangle" id="sample">
     <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
-    <bsdf type="normalmap">
+    <bsdf type="{NORMAL_MAP["type"]}">
+      <boolean name="conserve_energy" value="{str(NORMAL_MAP["conserve_energy"]).lower()}"/>
       {_format_texture("normalmap", files["normal"])}
       {turning}<bsdf {inner}type="{plugin["type"]}">
 {textures}
