@@ -27,13 +27,13 @@ def ball():
     return mask, np.stack([x, y, z], axis=-1) * mask[..., None]
 
 
-def shade(lights, strengths=1.0, power=1.0):
-    """Photographs (lights, height, width, 3) of a matte ball, as values to a `power`."""
+def shade(lights, strengths=1.0, power=1.0, texture=0.3):
+    """Photographs (lights, height, width, 3) of a matte ball with stripes, to a `power`."""
     mask, normals = ball()
     cosine = np.maximum(np.einsum("hwc,kc->khw", normals, lights), 0) * mask
-    texture = 0.7 + 0.3 * np.sin(np.arange(PIXELS) / 3)[:, None]
+    stripes = 1 - texture + texture * np.sin(np.arange(PIXELS) / 3)[:, None]
     strengths = np.broadcast_to(strengths, len(lights))[:, None, None]
-    return ((cosine * texture * strengths)[..., None] * ALBEDO) ** power
+    return ((cosine * stripes * strengths)[..., None] * ALBEDO) ** power
 
 
 def mirror(lights):
@@ -73,6 +73,7 @@ class Made:
     bits: int = 16
     stated: np.ndarray | None = None  # directions in files, where they are not the true ones
     mask: bool = True
+    texture: float = 0.3
 
     @property
     def names(self):
@@ -80,7 +81,7 @@ class Made:
 
     def write_photographs(self, folder, pictures=None):
         if pictures is None:
-            pictures = shade(self.lights, self.strengths, self.power)
+            pictures = shade(self.lights, self.strengths, self.power, self.texture)
         for name, picture in zip(self.names, pictures, strict=True):
             write_png(folder / name, picture, self.bits)
         if self.mask:

@@ -422,11 +422,6 @@ TRAPS = {
         lambda folder: (folder / "a.lp").write_text("1\nball_0.png 0 0 1"),
         "it could be DiLiGenT or a file .lp",
     ),
-    "no lights": (
-        "table",
-        lambda folder: (folder / "light_directions.csv").unlink(),
-        "no capture.toml in it, nor another file that says where the lights of its 12",
-    ),
     "a name of nobody": (
         "named_table",
         change("lights.csv", lambda t: t.replace("ball_4", "bell_4")),
@@ -492,6 +487,46 @@ def test_traps_are_one_sentence(name, tmp_path):
     assert sentence in str(error.value)
     assert str(tmp_path) in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def write_without_lights(folder, count, **how):
+    made = Made(directions(count), **how)
+    made.write_photographs(folder)
+    return folder
+
+
+def test_lights_that_nobody_states_are_estimated(tmp_path):
+    strengths = np.linspace(1, 0.8, 12)
+    folder = write_without_lights(tmp_path, 12, strengths=strengths, texture=0.05)
+    capture = load_photographs(folder)
+    assert np.median(angles(capture.lights.directions, directions())) < 5
+    found = capture.lights.intensities[:, 0]
+    np.testing.assert_allclose(found / found.mean(), strengths / strengths.mean(), rtol=0.05)
+    assert ["they were estimated from the photographs" in note for note in capture.notes] == [True]
+
+
+def test_few_photographs_without_lights_are_refused(tmp_path):
+    with pytest.raises(BrdfkitError, match=r"no capture.toml in it, nor .* its 5 photographs"):
+        load_photographs(write_without_lights(tmp_path, 5))
+
+
+def test_lights_of_an_object_without_an_outline_are_not_estimated(tmp_path):
+    write_without_lights(tmp_path, 6, mask=False)
+    write_mask(tmp_path / "mask.png", np.ones((48, 48), bool))
+    with pytest.raises(BrdfkitError, match="if the outline of the object is in the photographs"):
+        load_photographs(tmp_path)
+
+
+def test_8_bits_without_lights(tmp_path):
+    with pytest.raises(BrdfkitError, match=r"it has 8 bits; give --linearise"):
+        load_photographs(write_without_lights(tmp_path, 12, bits=8))
+
+
+def test_a_table_of_any_name(tmp_path):
+    folder = Made().turned_table(tmp_path)
+    (folder / "lights.txt").rename(folder / "L.txt")
+    (folder / "README.txt").write_text("3 balls\n1 2 3")
+    np.testing.assert_allclose(load_photographs(folder).lights.directions, directions(), atol=1e-6)
 
 
 def test_two_lights_are_too_few(tmp_path):

@@ -14,6 +14,7 @@ from brdfkit.inverse.photographs.capture.diagnosis.lambert import Sample, fit_la
 from brdfkit.inverse.photographs.capture.load_photographs import load_photographs
 from brdfkit.inverse.photographs.capture.number_table import read_vectors
 from brdfkit.inverse.photographs.capture.pictures.masks import read_mask
+from brdfkit.inverse.photographs.capture.unknown_lights.estimate import estimate_lights
 
 ROOT = Path(os.environ.get("BRDFKIT_CAPTURES", "unset"))
 pytestmark = [
@@ -80,6 +81,18 @@ def test_psbox():
     assert binary_erosion(capture.mask, iterations=20).any()
 
 
-def test_photographs_without_lights_are_refused():
-    with pytest.raises(BrdfkitError, match="its 20 photographs"):
-        load_photographs(ROOT / "bchao1+photometric-stereo" / "data" / "cat", "linear")
+@pytest.mark.parametrize(
+    ("name", "degrees"), [("buddha", 7), ("horse", 7), ("owl", 7), ("rock", 15)]
+)
+def test_lights_are_estimated(name, degrees):
+    capture = load_photographs(SERIES / name, "linear")
+    found = estimate_lights(capture, SERIES / name).lights
+    assert np.median(angles(found.directions, capture.lights.directions)) < degrees
+
+
+def test_photographs_without_lights():
+    """Two objects were under the same lights, a grid of four by five equal ones."""
+    folder = ROOT / "bchao1+photometric-stereo" / "data"
+    cat, frog = (load_photographs(folder / name, "linear").lights for name in ("cat", "frog"))
+    assert np.median(angles(cat.directions, frog.directions)) < 10
+    assert cat.intensities.std() < 0.05

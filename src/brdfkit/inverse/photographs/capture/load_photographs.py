@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.capture_file import load_capture
@@ -15,15 +17,21 @@ from brdfkit.inverse.photographs.capture.diagnosis.diagnose import (
 )
 from brdfkit.inverse.photographs.capture.folders import find_listing
 from brdfkit.inverse.photographs.capture.listing import Listing
-from brdfkit.inverse.photographs.capture.making_lights import check_spread, find_lights_in_front
+from brdfkit.inverse.photographs.capture.making_lights import (
+    check_spread,
+    find_lights_in_front,
+    make_distant_lights,
+)
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.capture.pictures.coding import LINEAR, Coding, to_coding
+from brdfkit.inverse.photographs.capture.pictures.masks import find_mask_file
 from brdfkit.inverse.photographs.capture.pictures.photograph_file import (
     EightBitError,
     list_photographs,
 )
 from brdfkit.inverse.photographs.capture.reading import leave_out, read_object
 from brdfkit.inverse.photographs.capture.toml_entries import NAME as CAPTURE_FILE
+from brdfkit.inverse.photographs.capture.unknown_lights.estimate import FEWEST, estimate_lights
 from brdfkit.materials.collections.public import find_folder
 
 DOWNLOADED = "captures"  # name of the collection of photographs
@@ -43,6 +51,9 @@ def load_photographs(
     folder: str | Path, linearise: str | float | None = None
 ) -> Capture | ObjectCapture:
     """Load the photographs in a folder, with their lights, by the kind of the folder.
+
+    Where no file says where the lights are, they are estimated from 6 photographs or more, and a
+    note says so.
 
     Parameters
     ----------
@@ -77,11 +88,13 @@ def load_photographs(
         return load_object(listing, coding)
     if (folder / CAPTURE_FILE).is_file():
         return load_capture(folder, coding=coding)
-    count = len(list_photographs(folder))
+    photographs = list_photographs(folder)
+    if len(photographs) >= FEWEST:
+        return _load_without_lights(folder, photographs, coding)
     raise BrdfkitError(
         f"{folder}: there is no {CAPTURE_FILE} in it, nor another file that says where the lights "
-        f"of its {count} photographs are; add lights.txt, with x y z of each (right, up, to the "
-        "camera)."
+        f"of its {len(photographs)} photographs are; add lights.txt, with x y z of each (right, "
+        "up, to the camera)."
     )
 
 
@@ -112,6 +125,21 @@ def load_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
     if found is None or (found == "decoded" and coding in (None, Coding())):
         return capture
     return replace(capture, notes=(*capture.notes, NOTES[found]))
+
+
+def _load_without_lights(
+    folder: Path, photographs: tuple[Path, ...], coding: Coding | None
+) -> ObjectCapture:
+    """Return the photographs of an object in a folder, with lights that are estimated from them."""
+    towards_camera = np.tile([0.0, 0.0, 1.0], (len(photographs), 1))
+    listing = Listing(
+        name=folder.resolve().name,
+        photographs=photographs,
+        lights=make_distant_lights(folder, towards_camera),
+        lights_file=folder,
+        mask=find_mask_file(folder),
+    )
+    return estimate_lights(read_object(listing, coding), folder)
 
 
 def _adapt_lights(capture: ObjectCapture, listing: Listing) -> ObjectCapture:

@@ -68,17 +68,27 @@ def score_axes(
 
 def _measure_outwardness(normals: FloatArray, mask: BoolArray) -> float:
     """Return the mean cosine between the outward direction and normals at the outline of a mask."""
+    edge, outward = find_outline(mask)
+    sideways = np.linalg.norm(normals[edge, :2], axis=1)
+    tilted = sideways > SMALLEST_TILT
+    if not tilted.any():
+        return 0.0
+    cosine = (normals[edge, :2] * outward).sum(axis=1)[tilted] / sideways[tilted]
+    return float(cosine.mean())
+
+
+def find_outline(mask: BoolArray) -> tuple[BoolArray, FloatArray]:
+    """Return the pixels at the outline of a mask (height, width), and outward directions there.
+
+    The directions (m, 2) are unit vectors, x to the right and y up. The edge of the photograph is
+    no outline of the object.
+    """
     down, right = np.gradient(ndimage.gaussian_filter(mask.astype(float), SMOOTHING))
     outward = np.stack([-right, down], axis=-1)
-    # The edge of the photograph is no outline of the object
-    inside = ndimage.binary_erosion(mask, iterations=OUTLINE_WIDTH, border_value=1)
-    sideways = np.linalg.norm(normals[..., :2], axis=-1)
     length = np.linalg.norm(outward, axis=-1)
-    edge = mask & ~inside & (np.nan_to_num(sideways) > SMALLEST_TILT) & (length > 0)
-    if not edge.any():
-        return 0.0
-    cosine = (normals[edge, :2] * outward[edge]).sum(axis=1) / sideways[edge] / length[edge]
-    return float(cosine.mean())
+    inside = ndimage.binary_erosion(mask, iterations=OUTLINE_WIDTH, border_value=1)
+    edge: BoolArray = mask & ~inside & (length > 0)
+    return edge, outward[edge] / length[edge][:, None]
 
 
 def _measure_curl(normals: FloatArray, mask: BoolArray) -> float:

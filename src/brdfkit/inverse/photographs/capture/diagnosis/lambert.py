@@ -36,9 +36,9 @@ class Sample:
     intensities: FloatArray
 
     @classmethod
-    def take(cls, capture: ObjectCapture) -> Sample:
-        """Return a sample of about `MOST_VALUES` values of the photographs of an object."""
-        most = MOST_VALUES / len(capture.values)
+    def take(cls, capture: ObjectCapture, most_pixels: float = np.inf) -> Sample:
+        """Return a sample of an object with about `MOST_VALUES` values, or `most_pixels` pixels."""
+        most = min(most_pixels, MOST_VALUES / len(capture.values))
         step = int(np.ceil(np.sqrt(max(1.0, capture.mask.sum() / most))))
         grid = np.zeros(capture.mask.shape, bool)
         grid[::step, ::step] = True

@@ -36,7 +36,7 @@ OF_INTENSITIES = "intens", "strength"
 def find_listing(folder: Path) -> Listing | None:
     """Return the `Listing` of a folder with one table of lights, or None without such a table."""
     photographs = list_photographs(folder)
-    path = find_table(folder)
+    path = _find_text(folder, OF_LIGHTS, OF_INTENSITIES) or _find_any_table(folder, photographs)
     if path is None or not photographs:
         return None
     table = read_vectors(path, len(photographs))
@@ -63,9 +63,17 @@ def find_listing(folder: Path) -> Listing | None:
     )
 
 
-def find_table(folder: Path) -> Path | None:
-    """Return the text file in a folder that seems to be a table of lights, None without one."""
-    return _find_text(folder, OF_LIGHTS, without=OF_INTENSITIES)
+def _find_any_table(folder: Path, photographs: tuple[Path, ...]) -> Path | None:
+    """Return a text file whose table has a row of three numbers or more for each photograph."""
+    for path in sorted(folder.iterdir()):
+        if path.suffix.lower() in TEXT_SUFFIXES and path.is_file():
+            try:
+                table = read_vectors(path, len(photographs))
+            except BrdfkitError:  # another text, such as a README
+                continue
+            if len(table.numbers) == len(photographs):
+                return path
+    return None
 
 
 def _find_text(folder: Path, words: tuple[str, ...], without: tuple[str, ...] = ()) -> Path | None:
