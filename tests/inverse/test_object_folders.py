@@ -8,6 +8,7 @@ from made_objects import Made, ball, directions, rows, shade, write_mask, write_
 from PIL import Image
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.diagnosis.lambert import fit_lambert
 from brdfkit.inverse.photographs.capture.folders import list_kinds
 from brdfkit.inverse.photographs.capture.load_photographs import load_photographs
@@ -231,6 +232,21 @@ def test_lights_in_other_axes_are_turned(name, tmp_path):
     assert capture.notes[0].count("y") >= 1
 
 
+def test_rows_in_the_order_of_text(tmp_path):
+    made = Made()
+    made.stated = made.lights[sorted(range(12), key=str)]  # 0, 1, 10, 11, 2 and so on
+    capture = load_photographs(made.table(tmp_path))
+    np.testing.assert_allclose(capture.lights.directions, made.lights, atol=1e-6)
+    assert ["alphabetical order" in note for note in capture.notes] == [True]
+
+
+def test_shuffled_lights_are_said(tmp_path):
+    made = Made()
+    made.stated = made.lights[np.random.default_rng(0).permutation(12)]
+    capture = load_photographs(made.diligent(tmp_path))
+    assert "hardly explain the photographs" in capture.notes[-1]
+
+
 def test_a_bowl_is_not_taken_for_a_ball(tmp_path):
     made = Made()
     made.stated = made.lights * [-1, -1, 1]
@@ -301,13 +317,15 @@ def test_clipped_values_are_lost(tmp_path):
     np.testing.assert_array_equal(capture.lost[..., :2], clipped[..., :2])
 
 
-def test_lamps_without_a_scale_are_taken_to_be_far_away(tmp_path):
+@pytest.mark.parametrize(("power", "said"), [(-2, "positions"), (1, "strengths"), (0, "not used")])
+@pytest.mark.parametrize("kind", ["rti", "table"])
+def test_lengths_of_vectors(kind, power, said, tmp_path):
     made = Made()
-    far = np.linspace(1, 2, 12)
-    made.strengths, made.stated = 1 / far**2, 70 * far[:, None] * made.lights
-    capture = load_photographs(made.rti(tmp_path))
-    assert "positions of lamps" in capture.notes[0]
-    assert len(capture.notes) == 1
+    lengths = np.linspace(1, 2, 12)
+    made.strengths = lengths**power / max(1, 2**power)
+    made.stated = 70 * lengths[:, None] * made.lights
+    capture = load_photographs(getattr(made, kind)(tmp_path))
+    assert [said in note for note in capture.notes] == [True]
     check_normals(capture)
 
 
@@ -527,6 +545,18 @@ def test_a_table_of_any_name(tmp_path):
     (folder / "lights.txt").rename(folder / "L.txt")
     (folder / "README.txt").write_text("3 balls\n1 2 3")
     np.testing.assert_allclose(load_photographs(folder).lights.directions, directions(), atol=1e-6)
+
+
+def test_a_flat_sample_in_a_png_of_16_bits(tmp_path):
+    values = np.random.default_rng(0).random((20, 24, 3))
+    write_png(tmp_path / "a.png", values)
+    (tmp_path / "capture.toml").write_text(
+        "[sample]\nwidth = 0.1\nheight = 0.08\n[camera]\norigin = [0, 0, 0.5]\nfov = 20\n"
+        '[[light]]\npicture = "a.png"\nposition = "camera"'
+    )
+    capture = load_photographs(tmp_path)
+    assert isinstance(capture, Capture)
+    np.testing.assert_allclose(capture.pictures[0], values, atol=1e-5)
 
 
 def test_two_lights_are_too_few(tmp_path):

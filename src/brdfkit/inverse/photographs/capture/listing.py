@@ -25,6 +25,10 @@ class Listing:
         The file that says where the lights are, for errors and notes.
     has_intensities : bool
         Whether that file, or another one, states the intensities of the lights.
+    lengths : ndarray, shape (lights,), optional
+        Lengths of the vectors to the lights in that file, if they differ and nothing says why.
+    is_ordered_by_number : bool
+        Whether the lights were given to the photographs in the order of the numbers in their names.
     mask : Path, optional
         The file of the mask.
     normals : ndarray, shape (height, width, 3), optional
@@ -44,6 +48,8 @@ class Listing:
     lights: Lights
     lights_file: Path
     has_intensities: bool = False
+    lengths: FloatArray | None = None
+    is_ordered_by_number: bool = False
     mask: Path | None = None
     normals: FloatArray | None = None
     pixel_size: float | None = None

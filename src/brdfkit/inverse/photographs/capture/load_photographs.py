@@ -10,11 +10,9 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.capture_file import load_capture
-from brdfkit.inverse.photographs.capture.diagnosis.diagnose import (
-    adapt_strengths,
-    find_coding,
-    turn_lights,
-)
+from brdfkit.inverse.photographs.capture.diagnosis.diagnose import find_coding, turn_lights
+from brdfkit.inverse.photographs.capture.diagnosis.order import describe_misfit, order_lights
+from brdfkit.inverse.photographs.capture.diagnosis.strengths import adapt_strengths
 from brdfkit.inverse.photographs.capture.folders import find_listing
 from brdfkit.inverse.photographs.capture.listing import Listing
 from brdfkit.inverse.photographs.capture.making_lights import (
@@ -143,10 +141,11 @@ def _load_without_lights(
 
 
 def _adapt_lights(capture: ObjectCapture, listing: Listing) -> ObjectCapture:
-    """Return photographs with lights in their axes, and in front of the object."""
+    """Return photographs with lights in their order and axes, and in front of the object."""
     path = listing.lights_file
-    capture = turn_lights(capture, path)
+    capture = turn_lights(order_lights(capture, listing), path)
     in_front = find_lights_in_front(path, capture.lights)
     capture = leave_out(capture, in_front, "lit from behind the object")
     check_spread(path, capture.lights)
-    return adapt_strengths(capture, path, listing.has_intensities)
+    capture = adapt_strengths(capture, listing)
+    return replace(capture, notes=(*capture.notes, *describe_misfit(capture)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +15,7 @@ FEWEST = 3  # lights with which a normal can be found
 # Share of lights behind the object above which the file is wrong, rather than a few of the lights
 MOST_BEHIND = 0.25
 SMALLEST_SPREAD = 0.02  # ratio of singular values of directions that do not lie in a plane
-EQUAL_LENGTHS = 1.02  # ratio of lengths up to which vectors are directions, and no positions
+EQUAL_LENGTHS = 1.02  # ratio of lengths up to which vectors are directions alone
 COUNT_ADVICE = "there should be one for each"
 
 
@@ -39,23 +38,10 @@ def make_distant_lights(
     return Lights(unit, np.ones_like(unit) if intensities is None else intensities)
 
 
-def make_lights_of_vectors(path: Path, vectors: FloatArray) -> tuple[Lights, bool, tuple[str, ...]]:
-    """Return lights from vectors (k, 3) that may be directions or positions, and notes on them.
-
-    Vectors of different lengths are positions, in a unit that nobody states: the lights are taken
-    to be far away, with intensities as lamps of equal strength have at the middle of the object.
-    The second result is whether there are such intensities.
-    """
-    lights = make_distant_lights(path, vectors)
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    if lengths.max() < EQUAL_LENGTHS * lengths.min():
-        return lights, False, ()
-    note = (
-        f"{path.name} has positions of lamps rather than directions; they were taken to be far "
-        "away, as the size of the object is not known; a file capture.toml would tell it."
-    )
-    intensities = np.repeat((np.median(lengths) / lengths) ** 2, 3, axis=1)
-    return replace(lights, intensities=intensities), True, (note,)
+def find_lengths(vectors: FloatArray) -> FloatArray | None:
+    """Return the lengths (k,) of vectors (k, 3) to lights if they differ, otherwise None."""
+    lengths: FloatArray = np.linalg.norm(vectors, axis=1)
+    return lengths if lengths.max() > EQUAL_LENGTHS * lengths.min() else None
 
 
 def to_intensities(path: Path, numbers: FloatArray, count: int) -> FloatArray:

@@ -53,7 +53,13 @@ def read_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
         distance=distance,
         notes=(*listing.notes, *notes, *scale_notes),
     )
-    return leave_out(capture, _is_lit(values), "unlit")
+    lit = _is_lit(values)
+    if not lit.any():
+        raise BrdfkitError(
+            f"{listing.photographs[0].parent}: all photographs are black where the object is; "
+            "check their exposure, and the mask."
+        )
+    return leave_out(capture, lit, "unlit")
 
 
 def find_clipped(values: FloatArray, largest: float) -> BoolArray:

@@ -17,7 +17,6 @@ MOST_VALUES = 400_000  # of a sample
 # Ranks of a pixel's values, as shares of all, between which shadows and highlights are rare
 LOWEST_RANK, HIGHEST_RANK = 0.25, 0.85
 FEWEST_RANKED = 7  # lights; with fewer all values count
-ROUNDS = 5  # of the search for the strengths of lights
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +55,11 @@ class Sample:
             directions=capture.lights.directions,
             intensities=irradiance.mean(axis=(1, 2)),
         )
+
+    @property
+    def scaled_lights(self) -> FloatArray:
+        """The directions of the lights times their intensities (lights, 3)."""
+        return self.directions * self.intensities[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,44 +100,3 @@ def fit_lambert(values: FloatArray, counted: BoolArray, lights: FloatArray) -> L
     variance = (used * (values - mean) ** 2).sum(axis=0)
     share = np.median(residual[variance > 0] / variance[variance > 0]) if variance.any() else 0.0
     return LambertFit(b, used, float(np.sqrt(share)))
-
-
-def estimate_strengths(sample: Sample) -> tuple[FloatArray, LambertFit]:
-    """Estimate the strengths of the lights (lights,), with the mean 1, and fit Lambert's law.
-
-    They start from `_solve_strengths`; then strengths and normals are fitted in turn to all values
-    outside shadows and highlights.
-    """
-    strengths = _solve_strengths(sample)
-    fit = fit_lambert(sample.values, sample.counted, strengths[:, None] * sample.directions)
-    for _ in range(ROUNDS):
-        predicted = sample.directions @ fit.scaled_normals.T * fit.used
-        ratio = (sample.values * predicted).sum(axis=1)
-        ratio = ratio / np.maximum((predicted**2).sum(axis=1), 1e-300)
-        strengths = np.where(ratio > 0, ratio, strengths)
-        strengths = strengths / strengths.mean()
-        fit = fit_lambert(sample.values, sample.counted, strengths[:, None] * sample.directions)
-    return strengths, fit
-
-
-def _solve_strengths(sample: Sample) -> FloatArray:
-    """Return strengths of the lights (lights,) from the pixels that few shadows reach.
-
-    Their values are V = diag(s) D B, with the strengths s, the directions D (lights, 3) and scaled
-    normals B. The first three left singular vectors U of V span the same space, U = diag(s) D A.
-    So 1 / s and A are the solution of the linear equations u_k / s_k = d_k A.
-    """
-    darkest = sample.values.min(axis=0) / np.maximum(np.median(sample.values, axis=0), 1e-300)
-    lit = sample.values[:, darkest >= np.median(darkest)]
-    u, scale, _ = np.linalg.svd(lit, full_matrices=False)
-    u = u[:, :3] * scale[:3]
-    count = len(u)
-    equations = np.zeros((count, 3, count + 9))
-    for column in range(3):
-        equations[np.arange(count), column, np.arange(count)] = u[:, column]
-        equations[:, column, count + 3 * column : count + 3 * column + 3] = -sample.directions
-    inverse = np.linalg.svd(equations.reshape(3 * count, -1))[2][-1][:count]
-    if not (inverse * np.sign(inverse.sum()) > 0).all():  # Lambert's law does not hold
-        return np.ones(count)
-    strengths: FloatArray = 1 / inverse
-    return strengths / strengths.mean()

@@ -7,14 +7,14 @@ order of the numbers in their names.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.inverse.photographs.capture.listing import Listing
 from brdfkit.inverse.photographs.capture.making_lights import (
     check_count,
-    make_lights_of_vectors,
+    find_lengths,
+    make_distant_lights,
     to_intensities,
 )
 from brdfkit.inverse.photographs.capture.number_table import (
@@ -42,24 +42,25 @@ def find_listing(folder: Path) -> Listing | None:
     table = read_vectors(path, len(photographs))
     photographs = _match_names(table, photographs)
     check_count(path, len(table.numbers), photographs)
-    lights, has_intensities, notes = make_lights_of_vectors(path, table.numbers[:, :3])
+    vectors = table.numbers[:, :3]
     strengths = _find_text(folder, OF_INTENSITIES)
     numbers = None
     if table.numbers.shape[1] > 3:
         strengths, numbers = path, table.numbers[:, 3:]
     elif strengths is not None:
         numbers = read_number_table(strengths).numbers
+    intensities = None
     if strengths is not None and numbers is not None:
         intensities = to_intensities(strengths, numbers, len(photographs))
-        lights = replace(lights, intensities=intensities)
     return Listing(
         name=folder.resolve().name,
         photographs=photographs,
-        lights=lights,
+        lights=make_distant_lights(path, vectors, intensities),
         lights_file=path,
-        has_intensities=has_intensities or numbers is not None,
+        has_intensities=intensities is not None,
+        is_ordered_by_number=not table.names,
+        lengths=None if intensities is not None else find_lengths(vectors),
         mask=find_mask_file(folder),
-        notes=notes,
     )
 
 

@@ -15,7 +15,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
 from brdfkit.inverse.photographs.capture.listing import Listing
-from brdfkit.inverse.photographs.capture.making_lights import make_lights_of_vectors
+from brdfkit.inverse.photographs.capture.making_lights import find_lengths, make_distant_lights
 from brdfkit.inverse.photographs.capture.number_table import read_lines
 from brdfkit.inverse.photographs.capture.pictures.masks import find_mask_file
 
@@ -36,15 +36,13 @@ def find_listing(folder: Path) -> Listing | None:
         )
     path = found[0]
     names, vectors = read_lp(path)
-    lights, has_intensities, notes = make_lights_of_vectors(path, vectors)
     return Listing(
         name=folder.resolve().name,
         photographs=tuple(_find_photograph(folder, path, name) for name in names),
-        lights=lights,
+        lights=make_distant_lights(path, vectors),
         lights_file=path,
-        has_intensities=has_intensities,
+        lengths=find_lengths(vectors),
         mask=find_mask_file(folder),
-        notes=notes,
     )
 
 
