@@ -19,6 +19,7 @@ SMALLER = {  # what shows as well that a line runs, and at once
     r"resolution=\d+": "resolution=64",
     r"spp=\d+\)": "spp=1)",
     r"samples=128": "samples=8",
+    r"spp=128,\n\)": "spp=16, steps=2)",
     r'"width": 48, "height": 48': '"width": 16, "height": 16',
     r'"(?:car_paint|satin_plastic)"': '"small.npz"',
     r'"brushed_aluminium"': '"brushed.npz"',

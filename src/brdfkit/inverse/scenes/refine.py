@@ -119,7 +119,8 @@ def refine(
         The pixels of each picture that count: booleans or weights ≥ 0 (height, width), or a picture
         file that is white there; None for a picture that counts everywhere. Masked pixels may hold
         anything. An alpha channel is ignored unless it is passed as ``mask=picture[..., 3]``.
-        Clipped pixels, three or more that equal the largest value of their channel, never count.
+        Clipped pixels, three or more that equal the largest value of their channel, never count,
+        and neither do the pixels beside them.
     accept_8_bit : bool, default False
         Whether to accept pictures of 8 bits, by inverting sRGB's curve.
     seed : int, default 0
@@ -261,8 +262,9 @@ def _make_views(
     values = sum(np.count_nonzero(target.weights) for target in targets)
     if not values or values < numbers <= PARAMETER_LIMIT:
         raise BrdfkitError(
-            f"refine: {numbers} numbers are more than the {values} values of the pictures that "
-            "count; give larger pictures, or name fewer."
+            f"refine: {numbers} number{'s are' if numbers > 1 else ' is'} more than the {values} "
+            "values of the pictures that count, as they are neither masked nor clipped; give "
+            "larger or darker pictures, or name fewer."
         )
     integrator = make_integrator(loaded)
     return Views(loaded, integrator, targets, traversed, unknowns, sensors, lighting)

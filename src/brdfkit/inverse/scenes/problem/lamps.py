@@ -66,6 +66,7 @@ class Lighting:
         ]
         used = frozenset().union(*self.burning)
         self.unused = tuple(shorten_lamp(name) for name in keys if name not in used)
+        # What was written last of each lamp; several `Lighting`s of one scene share it
         self._last: dict[str, bool | None] = {}
 
     def pick_pictures(self, numbers: Iterable[int]) -> "Lighting":
@@ -95,7 +96,8 @@ class Lighting:
         for lamp in self.lamps:
             burns = None if picture is None else lamp.name in self.burning[picture]
             own = lamp.strengths | {k: searched[k] for k in lamp.strengths if k in searched}
-            if lamp.strengths.keys().isdisjoint(searched) and self._last.get(lamp.name, 1) == burns:
+            is_same = lamp.name in self._last and self._last[lamp.name] == burns
+            if is_same and lamp.strengths.keys().isdisjoint(searched):
                 continue
             share = dr.opaque(mi.Float, float(burns is not False))
             for key, value in own.items():

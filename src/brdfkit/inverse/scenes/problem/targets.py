@@ -31,9 +31,9 @@ class Target:
 
     name : the picture's name, or its number as text.
     pixels : linear values (height, width, channels).
-    weights : the weight of each squared difference, in the same shape; 0 where the pixel is masked
-        or clipped, and everywhere in a picture that is black.
-    count : the number of values that are not clipped, as the sum of their mask.
+    weights : the weight of each squared difference, in the same shape; 0 where the pixel is masked,
+        clipped or beside a clipped one, and everywhere in a picture that is black.
+    count : the number of values that count, as the sum of their mask.
     clipped : the share of values that are clipped.
     unmasked : the mask (height, width) of pixels that count.
     """
@@ -120,9 +120,13 @@ def _read_picture(
 
 def _make_target(name: str, pixels: FloatArray, mask: FloatArray, white: float) -> Target:
     """Return the `Target` of linear pixels with their mask (height, width) and white level."""
+    from scipy.ndimage import binary_dilation
+
     share = np.broadcast_to(mask[..., None], pixels.shape) * float(pixels.any())
     clipped = _find_clipped(pixels, share > 0)
-    share = np.where(clipped, 0, share)
+    # Neighbours do not count either: of pixels about as bright as the limit, noise clips the bright
+    # ones, so those left are too dark; and a program may have blended them with clipped ones
+    share = np.where(binary_dilation(clipped, np.ones((3, 3, 1), bool)), 0, share)
     return Target(
         name,
         pixels,

@@ -172,7 +172,7 @@ def _describe_clipping(views: Views) -> tuple[str, ...]:
     if clipped:
         notes.append(
             f"{100 * clipped:.2g} % of the pixels are clipped, at the largest number of their "
-            "picture; they do not count"
+            "picture; they and their neighbours do not count"
         )
     return tuple(notes)
 

@@ -30,7 +30,7 @@ FINALISTS, FINALIST_STEPS = 3, 2
 JUDGE_FACTOR = 2
 # How many points are tried for each searched number in which pictures are not linear
 POINTS_PER_NUMBER = 8
-PICTURES = 4  # of more pictures under lamps of their own, so many choose the start
+PICTURES = 3  # of more pictures under lamps of their own, so many choose the start
 POINT_LIMIT = 32  # largest number of points besides the scene's own values
 
 

@@ -14,7 +14,7 @@ DERIVATIVE_COST = 2.3  # time of a picture of derivatives, relative to a plain p
 # Step of finite differences in a search coordinate; without bounds, relative to the coordinate
 DIFFERENCE_STEP = 0.05
 # Step of finite differences for the place of a lamp: a share of its distance, or in radians
-PLACE_STEP = 0.02
+PLACE_STEP = 0.03
 # Integrators of Mitsuba that cannot render a picture of derivatives
 BACKWARD_ONLY = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
 NOT_ATTACHED = "not attached to the AD graph"  # part of Mitsuba's error if nothing has a derivative
