@@ -1,11 +1,17 @@
 """`refine` of photographs under lamps of their own: lamps are switched, and their places found."""
 
+import json
+
 import drjit as dr
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from refined_scenes import LAMPS, TRUTH, TRUTH_BSDF, require_back, shoot, under_lamps
 
 import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.core.jit.threads import use_two_threads
+from brdfkit.inverse.scenes.problem.by_picture import choose_sensors
 from brdfkit.inverse.scenes.problem.lamps import Lighting
 from brdfkit.inverse.scenes.problem.parameters import choose_unknowns
 from brdfkit.inverse.scenes.problem.places import Place
@@ -157,6 +163,8 @@ def test_two_cameras_take_pictures_in_any_order(mi):
         bk.refine(scene, pictures, parameters=[ALPHA], cameras=cameras, **how),
         {ALPHA: TRUTH["alpha_u"]},
     )
+    by_id = choose_sensors(mi.load_dict(scene), ("side", "sensor"), None, True)
+    assert [sensor.id() for sensor in by_id] == ["side", "sensor"]
     with pytest.raises(bk.BrdfkitError, match="name the camera of each in cameras, of "):
         bk.refine(scene, pictures, parameters=[ALPHA], **how)
 
@@ -228,3 +236,57 @@ def test_a_direction_is_a_unit_vector():
     slopes = [(place.to_vector(numbers + step)[2] - vector[2]) / 1e-6 for step in 1e-6 * np.eye(2)]
     np.testing.assert_allclose(place.differentiate_dependent(numbers), slopes, rtol=1e-4)
     assert np.isfinite(place.to_vector(np.array([3.0, 4.0]))).all()
+
+
+SCENE = """<scene version="3.0.0"><integrator type="direct"/><sensor type="perspective">
+<film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/>
+<string name="pixel_format" value="rgb"/><rfilter type="box"/></film><float name="fov" value="40"/>
+<transform name="to_world"><lookat origin="0,0,4" target="0,0,0" up="0,1,0"/></transform></sensor>
+<shape type="sphere" id="ball"><bsdf type="lambert">
+<rgb name="diffuse_reflectance" value="COLOUR"/></bsdf></shape>
+<emitter type="point" id="left"><point name="position" x="-3" y="0" z="4"/>
+<rgb name="intensity" value="LEFT"/></emitter>
+<emitter type="point" id="right"><point name="position" x="3" y="0" z="4"/>
+<rgb name="intensity" value="RIGHT"/></emitter></scene>"""
+
+
+def test_the_command_finds_values(mi, tmp_path, monkeypatch):
+    """Names are those of the files; what is found is printed and written, or said in a sentence."""
+    monkeypatch.chdir(tmp_path)
+
+    def scene(colour, left, right):
+        words = {"COLOUR": colour, "LEFT": left, "RIGHT": right}
+        text = SCENE
+        for word, value in words.items():
+            text = text.replace(word, str(value))
+        return text
+
+    for name, lamps in (("a", (20, 0)), ("b", (0, 20))):
+        with use_two_threads():
+            picture = mi.render(mi.load_string(scene("0.6,0.3,0.1", *lamps)), spp=64)
+            mi.Bitmap(picture).write(f"{name}.exr")
+    (tmp_path / "scene.xml").write_text(scene("0.5,0.5,0.5", 20, 20))
+
+    def run(*words):
+        found = CliRunner().invoke(main, ["refine", "scene.xml", "a.exr", "b.exr", *words])
+        return found.exit_code, found.stdout if found.exit_code == 0 else found.output
+
+    lights = "--lights", "a=left", "--lights", "b=right"
+    status, said = run(*lights, "--spp", "64", "--json", "-o", "found")
+    assert status == 0, said
+    record = json.loads(said)
+    name = "ball.bsdf.diffuse_reflectance"
+    assert record["values"][name] == pytest.approx([0.6, 0.3, 0.1], rel=0.03)
+    names = {path.rsplit("/", 1)[-1] for path in record["written"]}
+    assert names == {"refined.json", "ball.bsdf.json", "look_a.png", "look_b.png"}
+    assert json.loads((tmp_path / "found" / "refined.json").read_text())["names"] == ["a", "b"]
+    assert bk.load(tmp_path / "found" / "ball.bsdf.json").values["diffuse_reflectance"]
+    for words, says in (
+        (("--lights", "a"), "should read PICTURE=LAMP"),
+        (("--lights", "a=left"), "no lamp burns in b"),
+        ((*lights, "--parameter", f"{name}=1"), "should read"),
+        ((*lights, "--mask", "c=a.exr"), "no picture 'c'"),
+    ):
+        status, said = run(*words)
+        assert status == 2
+        assert says in said
