@@ -57,8 +57,8 @@ def load_photographs(
     ----------
     folder : path
         A folder with ``capture.toml``, one of DiLiGenT, or one of the other kinds that
-        docs/how_to/photographs_of_objects.md lists; or the name of photographs that `brdfkit data get`
-        downloaded, such as ``captures/cat``.
+        docs/how_to/photographs_of_objects.md lists; or the name of photographs that
+        `brdfkit data get` downloaded, such as ``captures/cat``.
     linearise : str or float, optional
         How the numbers of photographs are coded: "linear" if they are in proportion to light,
         "sRGB", "gamma" (2.2), or the exponent of a gamma. Without it 16 bits are linear, and
