@@ -13,6 +13,7 @@ from brdfkit.inverse.photographs.capture.diagnosis.lambert import fit_lambert
 from brdfkit.inverse.photographs.capture.folders import list_kinds
 from brdfkit.inverse.photographs.capture.load_photographs import load_photographs
 from brdfkit.inverse.photographs.capture.pictures.coding import Coding, to_coding
+from brdfkit.inverse.photographs.capture.pictures.masks import read_mask
 from brdfkit.inverse.photographs.capture.pictures.photograph_file import read_linear
 from brdfkit.inverse.photographs.capture.reading import ALMOST
 
@@ -138,7 +139,9 @@ def write_tiff(bits, **how):
 
     def write(path, values):
         kind = {8: np.uint8, 16: np.uint16}[bits]
-        tifffile.imwrite(path, np.round(values * (2**bits - 1)).astype(kind), **how)
+        whole = np.round(values * (2**bits - 1)).astype(kind)
+        whole = np.moveaxis(whole, 2, 0) if "planarconfig" in how else whole
+        tifffile.imwrite(path, whole, **how)
 
     return write
 
@@ -149,6 +152,7 @@ FORMATS = {
     "grey.png": (lambda path, values: write_png(path, values[..., :1]), 1e-5),
     "deep.tif": (write_tiff(16), 1e-5),
     "deep.tiff": (write_tiff(16, compression="zlib", byteorder=">"), 1e-5),
+    "planes.tif": (write_tiff(16, photometric="rgb", planarconfig="separate"), 1e-5),
     "flat.tif": (write_tiff(8), 1 / 255),
     "8.png": (lambda path, values: write_png(path, values, 8), 1 / 255),
 }
@@ -165,6 +169,14 @@ def test_every_format_of_photographs(name, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=0, atol=error)
     assert largest == (np.inf if name == "a.exr" else 1)
     assert found.dtype == np.float32
+
+
+@pytest.mark.parametrize("mode", ["1", "L", "P", "RGBA"])
+@pytest.mark.parametrize("suffix", [".png", ".tif"])
+def test_masks_of_every_kind(mode, suffix, tmp_path):
+    mask = ball()[0]
+    Image.fromarray(mask.astype(np.uint8) * 255).convert(mode).save(tmp_path / f"mask{suffix}")
+    np.testing.assert_array_equal(read_mask(tmp_path / f"mask{suffix}"), mask)
 
 
 def test_raw_files_are_linear(tmp_path):

@@ -1,4 +1,4 @@
-"""Reads TIFF photographs: of 8 bits by Pillow, and of 16 bits or floats by tifffile."""
+"""Reads TIFF photographs: of 8 bits and grey ones by Pillow, all others by tifffile."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ def read_tiff(path: Path) -> AnyArray:
 
     try:
         with Image.open(path) as picture:
-            bits = np.max(picture.getexif().get(BITS_PER_SAMPLE, 8))
+            bits = np.max(picture.getexif().get(BITS_PER_SAMPLE, 1))
             # Pillow keeps only the upper 8 bits of colours of 16 bits
-            if bits == 8 and picture.mode in ("L", "RGB", "RGBA"):
-                return np.array(picture)
+            if bits <= 8 or picture.mode.startswith("I;16"):
+                as_numbers = {"1": "L", "P": "RGB", "CMYK": "RGB"}.get(picture.mode)
+                return np.array(picture.convert(as_numbers) if as_numbers else picture)
     except (OSError, ValueError, SyntaxError):  # no TIFF, or one that Pillow does not know
         pass
     return _read_deep_tiff(path)
@@ -50,6 +51,8 @@ def _read_deep_tiff(path: Path) -> AnyArray:
         ) from error
     except (OSError, ValueError, RuntimeError, IndexError, TypeError) as error:
         raise BrdfkitError(f"{path}: it is no TIFF, or it is damaged; save it again.") from error
+    if numbers.ndim == 3 and numbers.shape[0] in (3, 4) and numbers.shape[2] > 4:
+        numbers = np.moveaxis(numbers, 0, 2)  # a plane for each colour
     if numbers.ndim not in (2, 3) or numbers.dtype.kind not in "uf":
         raise BrdfkitError(
             f"{path}: it has the shape {numbers.shape} of {numbers.dtype}; save it as one picture "
