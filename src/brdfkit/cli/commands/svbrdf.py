@@ -1,4 +1,4 @@
-"""`brdfkit svbrdf`: fits a model's parameter maps to photographs of a flat sample."""
+"""`brdfkit svbrdf`: fits a model's parameter maps to photographs of a sample or an object."""
 
 from __future__ import annotations
 
@@ -47,9 +47,16 @@ from brdfkit.core.interrupts import Interrupted
     "Default: chosen by photographs that are held out.",
 )
 @click.option(
-    "--accept-8-bit",
-    is_flag=True,
-    help="Accept photographs with 8 bits, and invert their sRGB curve.",
+    "--linearise",
+    metavar="CODING",
+    help="How the numbers of photographs are coded: linear, sRGB, gamma (2.2), or an exponent. "
+    "Photographs with 8 bits need it.",
+)
+@click.option(
+    "--hold-out",
+    type=click.IntRange(2),
+    metavar="N",
+    help="Hold every N-th photograph out of the fit, and compare it with its prediction.",
 )
 @output_option("Folder for the maps, a scene and a report. Default: FOLDER/maps.")
 @writing_options
@@ -60,15 +67,22 @@ def svbrdf(
     anisotropic: bool,
     fixed: tuple[str, ...],
     smoothness: float | None,
-    accept_8_bit: bool,
+    linearise: str | None,
+    hold_out: int | None,
     output: Path | None,
     console: Console,
 ) -> None:
     """Fit texture maps of a material to photographs of it.
 
-    FOLDER holds linear photographs of a flat sample (OpenEXR), each lit by one point light or
-    flash, and the file capture.toml with the positions of the camera and the lights. The camera may
-    move, like a phone with its flash. See docs/how_to/photographs.md.
+    FOLDER holds photographs, each under one light, and a file that says where the lights are.
+
+    Photographs of a flat sample have a file capture.toml with the places of the lights and the
+    camera, which may move, like a phone with its flash. Photographs of an object by a camera that
+    stands still may also come as folders of DiLiGenT or PSBox, from a dome (RTI, .lp), with a
+    chrome ball, or with a table of light directions. An object's maps have the photographs' pixels.
+
+    Ctrl-C keeps the maps so far; for an object, the same command then goes on from there. See
+    docs/how_to/photographs.md.
     """
     from brdfkit.cli.arguments import use_results_folder
     from brdfkit.inverse.photographs import svbrdf as fit_maps
@@ -87,7 +101,9 @@ def svbrdf(
                 anisotropic=anisotropic,
                 fixed=values,
                 smoothness=smoothness,
-                accept_8_bit=accept_8_bit,
+                linearise=linearise,
+                hold_out=hold_out,
+                checkpoint=output,
                 progress=progress,
             )
         except Interrupted as stop:
@@ -96,8 +112,7 @@ def svbrdf(
     if not console.as_json:
         console.output.print(str(maps), markup=False, highlight=False)
     if console.as_json:
-        names = ("smoothness", "residual", "held_out", "predicted", "notes", "seconds")
-        console.print_json({**{name: getattr(maps, name) for name in names}, "written": written})
+        console.print_json({**maps.record(), "written": written})
     else:
         console.print_written(written)
     if interrupted:

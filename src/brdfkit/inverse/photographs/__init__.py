@@ -14,6 +14,12 @@ public function, which runs the parts below one after the other:
 """
 
 from brdfkit.inverse.photographs.capture.capture import Capture as Capture
+from brdfkit.inverse.photographs.capture.lights import Lights as Lights
+from brdfkit.inverse.photographs.capture.load_photographs import (
+    load_photographs as load_photographs,
+)
+from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture as ObjectCapture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole as Pinhole
+from brdfkit.inverse.photographs.objects.object_maps import ObjectMaps as ObjectMaps
 from brdfkit.inverse.photographs.result.result import Svbrdf as Svbrdf
 from brdfkit.inverse.photographs.svbrdf import svbrdf as svbrdf

@@ -5,13 +5,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from brdfkit.core.arguments import to_dictionary, to_number, to_whole_number
+from brdfkit.core.array_types import IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.capture import SMALLEST_MAP, Capture
-from brdfkit.inverse.photographs.capture.capture_file import load_capture
+from brdfkit.inverse.photographs.capture.load_photographs import load_photographs
+from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.maps.maps import find_width_pair
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.model import labels
@@ -32,13 +36,29 @@ def check_variant() -> None:
         raise BrdfkitError("svbrdf: it needs LLVM, for derivatives; see the README.")
 
 
-def to_capture(value: object, accept_8_bit: bool) -> tuple[str, Capture]:
-    """Return a sample's name and its `Capture`, from the folder of photographs or a `Capture`."""
+def to_capture(value: object, linearise: str | float | None) -> tuple[str, Capture | ObjectCapture]:
+    """Return a name and the photographs, from their folder or as a `Capture` or `ObjectCapture`.
+
+    `linearise` says how the numbers of the photographs in a folder are coded.
+    """
+    if isinstance(value, ObjectCapture):
+        return value.name, value
     if isinstance(value, Capture):
         return "sample", value
     if not isinstance(value, str | PathLike):
         raise BrdfkitError(f"capture: a {type(value).__name__} is neither a folder nor a Capture.")
-    return Path(value).resolve().name, load_capture(Path(value), accept_8_bit)
+    return Path(value).resolve().name, load_photographs(Path(value), linearise)
+
+
+def choose_hidden_photographs(count: int, hold_out: int | None) -> IntArray:
+    """Return the indices of the photographs that are held out: every `hold_out`-th of `count`."""
+    if hold_out is None:
+        return np.zeros(0, int)
+    step = to_whole_number("hold_out", hold_out, 2)
+    hidden = np.arange(count)[1::step]
+    if not len(hidden):
+        raise BrdfkitError(f"hold_out: of {count} photographs none can be held out; leave it out.")
+    return hidden
 
 
 def to_texel_parameters(

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray
 from brdfkit.inverse.photographs.capture.checks import check_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole
 
@@ -62,6 +62,18 @@ class Capture:
 
     def __post_init__(self) -> None:
         check_capture(self)
+
+    def select_lights(self, lights: IntArray) -> Capture:
+        """Return the photographs with the given indices."""
+        return replace(
+            self,
+            pictures=self.pictures[lights],
+            positions=self.positions[lights],
+            intensities=self.intensities[lights],
+            camera=tuple(self.cameras[k] for k in lights),
+            names=tuple(self.names[k] for k in lights),
+            lost=self.excluded[lights],
+        )
 
     @property
     def cameras(self) -> tuple[Pinhole, ...]:

@@ -29,17 +29,14 @@ POSITION_KEYS = "origin", "corners"  # keys of a camera in the file; one of the 
 LIGHT_KEYS = "picture", "position", "intensity", "camera"
 
 
-def load_capture(
-    folder: str | Path, accept_8_bit: bool = False, coding: Coding | None = None
-) -> Capture:
+def load_capture(folder: str | Path, coding: Coding | None = None) -> Capture:
     """Return the `Capture` in a folder; docs/how_to/photographs.md describes the file capture.toml.
 
-    `coding` tells how the numbers of photographs are coded; `accept_8_bit` stands for that of sRGB.
+    `coding` tells how the numbers of photographs are coded.
     Raises `BrdfkitError` for entries that are missing, misspelt or wrong, for pictures of different
     sizes, and for pictures of 8 bits of unknown coding.
     """
     folder = Path(folder)
-    coding = coding or (Coding(None) if accept_8_bit else None)
     path = folder / NAME
     tables = read_tables(folder)
     sample = tables.get("sample", {})

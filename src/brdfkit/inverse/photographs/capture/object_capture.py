@@ -83,6 +83,11 @@ class ObjectCapture:
             lost=None if self.lost is None else self.lost[lights],
         )
 
+    def with_exposures(self, exposures: FloatArray) -> ObjectCapture:
+        """Return the photographs with lights that are `exposures` (lights,) times as strong."""
+        intensities = self.lights.intensities * exposures[:, None]
+        return replace(self, lights=replace(self.lights, intensities=intensities))
+
     def to_picture(self, values: FloatArray, background: float = 0.0) -> FloatArray:
         """Return a picture (height, width) or (height, width, c) of values of the n pixels."""
         picture = np.full((*self.mask.shape, *values.shape[1:]), background, values.dtype)

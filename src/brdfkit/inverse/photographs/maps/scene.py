@@ -31,13 +31,13 @@ def make_sample_dict(svbrdf: Any) -> dict[str, Any]:
 def make_bsdf_dict(svbrdf: Any) -> dict[str, Any]:
     """Return the material of an `Svbrdf` or `Maps` as a Mitsuba dictionary, textured by maps."""
     maps = svbrdf.maps
-    textures = {name: _make_bitmap_texture(maps[name]) for name in _list_parameter_maps(maps)}
+    textures = {name: make_bitmap_texture(maps[name]) for name in _list_parameter_maps(maps)}
     material = {**_make_plugin_dict(svbrdf.model), **svbrdf.fixed, **textures}
     if ANGLE in maps:
         # Angles jump by π along a line of the map, where interpolated ones would be wrong
-        angle = _make_bitmap_texture(maps[ANGLE]) | {"filter_type": "nearest"}
+        angle = make_bitmap_texture(maps[ANGLE]) | {"filter_type": "nearest"}
         material = {"type": "tangent_rotation", "angle": angle, "bsdf": material}
-    normals = _make_bitmap_texture((maps["normal"] + 1) / 2)
+    normals = make_bitmap_texture((maps["normal"] + 1) / 2)
     return {**NORMAL_MAP, "normalmap": normals, "bsdf": material}
 
 
@@ -52,7 +52,7 @@ def _make_plugin_dict(label: str) -> dict[str, Any]:
     return {"type": model.type_name(), **model.changed_options()}
 
 
-def _make_bitmap_texture(values: FloatArray) -> dict[str, Any]:
+def make_bitmap_texture(values: FloatArray) -> dict[str, Any]:
     """Return the dictionary of a Mitsuba texture with the values of a map."""
     import mitsuba as mi
 
@@ -76,26 +76,11 @@ def format_scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
     width, height = svbrdf.size
     capture = svbrdf.capture
     camera, size = capture.cameras[0], capture.picture_size
-    textures = "\n".join(
-        f"        {_format_texture(name, files[name])}"
-        for name in _list_parameter_maps(svbrdf.maps)
-    )
-    turning, inner, end = "", "", ""
-    if ANGLE in svbrdf.maps:
-        angle = _format_texture("angle", files[ANGLE], "nearest")
-        turning, end = f'<bsdf type="tangent_rotation">\n        {angle}\n        ', "</bsdf>"
-        inner = 'name="bsdf" '
     look = " ".join(
         f'{name}="{_join_with_commas(getattr(camera, name))}"'
         for name in ("origin", "target", "up")
     )
     clips = "\n".join(f'    <float name="{n}" value="{v!r}"/>' for n, v in camera.clips().items())
-    plugin = _make_plugin_dict(svbrdf.model)
-    values = {**{name: v for name, v in plugin.items() if name != "type"}, **svbrdf.fixed}
-    numbers = "\n".join(
-        f'        <{_name_xml_type(value)} name="{name}" value="{value}"/>'
-        for name, value in values.items()
-    )
     return f"""<!-- Load after "import brdfkit", or render with: brdfkit render sample.xml -->
 <scene version="3.0.0">
   <integrator type="direct"/>
@@ -119,20 +104,42 @@ def format_scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
   </emitter>
   <shape type="rectangle" id="sample">
     <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
-    <bsdf type="{NORMAL_MAP["type"]}">
-      <boolean name="conserve_energy" value="{str(NORMAL_MAP["conserve_energy"]).lower()}"/>
-      {_format_texture("normalmap", files["normal"])}
-      {turning}<bsdf {inner}type="{plugin["type"]}">
-{textures}
-{numbers}
-      </bsdf>{end}
-    </bsdf>
+{format_material_xml(svbrdf, files)}
   </shape>
 </scene>
 """
 
 
-def _format_texture(name: str, file: str, interpolation: str = "bilinear") -> str:
+def format_material_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
+    """Return the material of maps as XML: a normal map around the model, textured by their files.
+
+    `files` maps the name of each map to its file beside the scene.
+    """
+    textures = "\n".join(
+        f"        {format_texture(name, files[name])}" for name in _list_parameter_maps(svbrdf.maps)
+    )
+    turning, inner, end = "", "", ""
+    if ANGLE in svbrdf.maps:
+        angle = format_texture("angle", files[ANGLE], "nearest")
+        turning, end = f'<bsdf type="tangent_rotation">\n        {angle}\n        ', "</bsdf>"
+        inner = 'name="bsdf" '
+    plugin = _make_plugin_dict(svbrdf.model)
+    values = {**{name: v for name, v in plugin.items() if name != "type"}, **svbrdf.fixed}
+    numbers = "\n".join(
+        f'        <{_name_xml_type(value)} name="{name}" value="{value}"/>'
+        for name, value in values.items()
+    )
+    return f"""    <bsdf type="{NORMAL_MAP["type"]}">
+      <boolean name="conserve_energy" value="{str(NORMAL_MAP["conserve_energy"]).lower()}"/>
+      {format_texture("normalmap", files["normal"])}
+      {turning}<bsdf {inner}type="{plugin["type"]}">
+{textures}
+{numbers}
+      </bsdf>{end}
+    </bsdf>"""
+
+
+def format_texture(name: str, file: str, interpolation: str = "bilinear") -> str:
     """Return the XML of a Mitsuba texture that is read from a file."""
     return (
         f'<texture type="bitmap" name="{name}"><string name="filename" value="{file}"/>'

@@ -34,7 +34,9 @@ SMALLEST_SCALE = 0.005
 EXPOSURE_ROUNDS = 3  # how often the exposures are estimated
 SCALE_OF_SHAPES = 0.1  # scale of the residuals with which shape parameters are compared
 WIDEST, NARROWEST = 0.7, 0.03  # range of the widths of lobes that are tried
-TRIALS = 9  # values of a shape parameter in the first round; the second round tries those between
+LARGEST_TRIAL = 10.0  # largest value of a shape parameter without a logarithm that is tried
+TRIALS = 9  # values of a shape parameter in the first round
+FINER = 0.3, 0.1  # steps of the next rounds around the best value, as shares of the first step
 GLOSS_START = 0.05  # weight of each highlight at the start, as a share of the diffuse weight
 BEST_SHARE = 0.25  # share of the pixels, those with the surest highlights, that tell usual weights
 SPREAD_ROUNDS = 4  # rounds in which the spread of usual weights is estimated
@@ -144,7 +146,7 @@ def fit_from_start(tile: Tile, known: Calibration) -> Pixels:
     weights = np.repeat(albedos[:, :, None], lobes, axis=2)
     weights[..., 1:] *= GLOSS_START
     pixels = Pixels(normals, weights, np.zeros(0), np.zeros(0))
-    for scale in SCALES:
+    for scale in [s for s in SCALES if s > known.scale] or SCALES[:1]:
         pixels = fit_pixels(tile, known.reflection, pixels.normals, pixels.weights, scale, STEPS)
     return pixels
 
@@ -162,12 +164,13 @@ def _find_shapes(
     """Return the shape parameters with which the chosen pixels fit best, one after the other."""
     tile = Tile.collect(capture, chosen, known.exposures)
     start = fit_from_start(tile, known)
-    scale = min(SCALE_OF_SHAPES, known.scale)
 
     def measure_loss(shapes: dict[str, float]) -> float:
         """Return the mean loss of the pixels that are fitted with some shape parameters."""
         reflection = replace(known, shapes=shapes).reflection
-        pixels = fit_pixels(tile, reflection, start.normals, start.weights, scale, 2 * STEPS)
+        pixels = fit_pixels(
+            tile, reflection, start.normals, start.weights, SCALE_OF_SHAPES, 2 * STEPS
+        )
         return float(pixels.loss.mean())
 
     shapes = dict(known.shapes)
@@ -198,7 +201,7 @@ def _find_minimum(values: list[float], losses: list[float], is_log: bool) -> flo
 
 
 def _list_trials(known: Calibration, name: str, shapes: dict[str, float]) -> Iterator[list[float]]:
-    """Yield the values of a shape parameter to try: all over its range, then about the best one.
+    """Yield the values of a shape parameter to try: all over its range, then around the best one.
 
     `shapes` has the best value after the first values were tried.
     """
@@ -208,13 +211,16 @@ def _list_trials(known: Calibration, name: str, shapes: dict[str, float]) -> Ite
         low, high = max(low, NARROWEST), min(high, WIDEST)
         values = np.geomspace(low, high, TRIALS)
         yield values.tolist()
-        step = (high / low) ** (1 / (TRIALS - 1))
-        near = shapes[name] * step ** np.array([-0.6, -0.3, 0, 0.3, 0.6])
-    else:
-        values = np.linspace(low, min(high, 10.0), TRIALS)
-        yield values.tolist()
-        near = shapes[name] + (values[1] - values[0]) * np.array([-0.6, -0.3, 0, 0.3, 0.6])
-    yield np.clip(near, *parameter.bounds).tolist()
+        step = float((high / low) ** (1 / (TRIALS - 1)))
+        for width in FINER:
+            near = shapes[name] * step ** (width * np.arange(-2, 3))
+            yield np.clip(near, *parameter.bounds).tolist()
+        return
+    values = np.linspace(low, min(high, LARGEST_TRIAL), TRIALS)
+    yield values.tolist()
+    for width in FINER:
+        near = shapes[name] + width * (values[1] - values[0]) * np.arange(-2, 3)
+        yield np.clip(near, *parameter.bounds).tolist()
 
 
 def _measure_photographs(
@@ -223,7 +229,7 @@ def _measure_photographs(
     """Return the calibration with exposures and noise that the fitted pixels show.
 
     The exposure of a photograph is the median ratio of its values to the predicted ones. Only
-    ratios of exposures can be found, so their geometric mean stays.
+    ratios of exposures can be found, so their geometric mean stays 1.
     """
     logarithms, residuals, counted = [], [], 0.0
     predictions = predict(tile, known.reflection, pixels.normals, pixels.weights)

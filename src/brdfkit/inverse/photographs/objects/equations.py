@@ -136,9 +136,7 @@ def compute_equations(
         y = dr.minimum(square / CUT**2, 1)
         w = dr.select(counts, (1 - y) * (1 - y), 0)
         matrix, coupling, slope_matrix, gradient, slope_gradient, loss, lights = sums
-        loss = loss + dr.select(
-            counts, CUT**2 * CHANNELS / 3 * (1 - (1 - y) * (1 - y) * (1 - y)), 0
-        )
+        loss = loss + dr.select(counts, CUT**2 * (1 - (1 - y) * (1 - y) * (1 - y)), 0)
         lights = lights + w
         for c in range(CHANNELS):
             scaled = factors[c] * irradiance[c]

@@ -7,7 +7,6 @@ third pass computes standard errors.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -33,7 +32,7 @@ NEIGHBOURS = 3  # side of the square [pixels] over which normals are averaged fo
 # Standard deviation [radians] of a normal from the mean of its neighbours; smaller deviations are
 # taken for noise where the photographs do not say otherwise
 NORMAL_SPREAD = 0.03
-CALIBRATION_REPORTS = 9  # reports of the calibration besides those of shape parameters
+CALIBRATION_REPORTS = 4  # reports of the calibration besides those of shape parameters
 PASSES = 3
 
 
@@ -79,7 +78,7 @@ class FittedObject:
 def estimate_reports(capture: ObjectCapture, parameters: TexelParameters) -> int:
     """Return how often `fit_object` reports, for its progress bar."""
     tiles = split_into_tiles(capture.values.shape[1], len(capture.lights))
-    return CALIBRATION_REPORTS + 4 * len(parameters.names) + PASSES * len(tiles)
+    return CALIBRATION_REPORTS + 6 * len(parameters.names) + PASSES * len(tiles)
 
 
 def fit_object(
@@ -159,13 +158,3 @@ def _average_normals(capture: ObjectCapture, normals: FloatArray) -> FloatArray:
     means = sums[capture.mask]
     length = np.linalg.norm(means, axis=1, keepdims=True)
     return np.where(length > 0, means / np.maximum(length, 1e-12), normals)
-
-
-def compute_fingerprint(capture: ObjectCapture, label: str, fixed: dict[str, float]) -> str:
-    """Return a checksum of a capture and a model, which tells whether a state belongs to them."""
-    digest = hashlib.sha256(f"{label} {sorted(fixed.items())} {capture.names}".encode())
-    digest.update(np.ascontiguousarray(capture.values[:, ::97]).tobytes())
-    digest.update(capture.mask.tobytes())
-    digest.update(np.ascontiguousarray(capture.lights.directions, float).tobytes())
-    digest.update(np.ascontiguousarray(capture.lights.intensities, float).tobytes())
-    return digest.hexdigest()

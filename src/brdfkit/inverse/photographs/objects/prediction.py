@@ -44,22 +44,20 @@ def compute_relative_differences(
     return (predicted - values) / np.maximum(np.maximum(values, 0) + floor, 1e-12)
 
 
-def measure_errors(
+def predict_photographs(
     capture: ObjectCapture,
     reflection: Reflection,
     normals: FloatArray,
     weights: FloatArray,
-) -> dict[str, FloatArray]:
-    """Return the relative errors of predictions for each photograph of a capture, by its name.
+) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Return predictions (n, 3) and photographed values (n, 3) of pixels, by photographs' names.
 
-    An error is the difference's mean over the channels, divided by that of the photograph's
-    values. Pixels that face away from the light and values that do not count have no error; shadows
-    that one part of an object casts on another are errors.
+    Pixels that face away from the light and values that do not count are left out. Shadows that one
+    part of an object casts on another are not predicted.
     """
-    pixels = slice(0, len(normals))
     tile = Tile.under_lights(capture.lights, capture.points, capture.to_camera)
-    lost = np.zeros((1, 1, 1), bool) if capture.lost is None else capture.lost[:, pixels]
-    errors = {}
+    lost = np.zeros((1, 1, 1), bool) if capture.lost is None else capture.lost
+    pairs = {}
     parts = zip(
         capture.names,
         capture.values,
@@ -69,6 +67,5 @@ def measure_errors(
     )
     for name, values, is_lost, (predicted, faces) in parts:
         counts: AnyArray = faces & ~is_lost.any(axis=1) & (values.mean(axis=1) > 0)
-        difference = np.abs(predicted - values)[counts].mean(axis=1)
-        errors[name] = difference / values[counts].mean(axis=1)
-    return errors
+        pairs[name] = predicted[counts].astype(np.float32), values[counts]
+    return pairs

@@ -39,9 +39,9 @@ def write_files(svbrdf: Any, folder: str | Path) -> list[Path]:
     for name, values in svbrdf.maps.items():
         # Components of normals lie between -1 and 1, but colours between 0 and 1
         pixels = (values + 1) / 2 if name == "normal" else values
-        written += _write_or_remove_map(folder / files[name], pixels)
-        written += _write_or_remove_map(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
-    written += _write_or_remove_map(folder / MISFIT, svbrdf.misfit)
+        written += write_or_remove_map(folder / files[name], pixels)
+        written += write_or_remove_map(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
+    written += write_or_remove_map(folder / MISFIT, svbrdf.misfit)
     scene = folder / SCENE
     with write_safely(scene) as beside:
         Path(beside).write_text(format_scene_xml(svbrdf, files), encoding="utf-8")
@@ -50,7 +50,7 @@ def write_files(svbrdf: Any, folder: str | Path) -> list[Path]:
     return [*written, scene, report]
 
 
-def _write_or_remove_map(path: Path, values: FloatArray | None) -> list[Path]:
+def write_or_remove_map(path: Path, values: FloatArray | None) -> list[Path]:
     """Write a map and return its path in a list, or remove the file if there is no map.
 
     A file that an earlier result wrote would not belong to the maps beside it.

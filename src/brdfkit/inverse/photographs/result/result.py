@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.documents import Document, Shown
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.observations import illuminate_points
+from brdfkit.inverse.photographs.result.comparison import Comparison
 from brdfkit.inverse.photographs.result.summary import describe_svbrdf
 
 
@@ -62,6 +63,8 @@ class Svbrdf(Shown):
         The PSNR [dB] of Mitsuba's rendering of each photograph, by its name.
     rendered : ndarray, shape (lights, height, width, 3), or None
         Mitsuba's renderings of the photographs.
+    held_out_errors : Comparison, or None
+        The relative errors of photographs that the argument `hold_out` kept out of the fit.
     """
 
     name: str
@@ -79,6 +82,7 @@ class Svbrdf(Shown):
     residual: float = math.nan
     predicted: dict[str, float] = field(default_factory=dict)
     rendered: FloatArray | None = field(default=None, repr=False)
+    held_out_errors: Comparison | None = None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -163,6 +167,12 @@ class Svbrdf(Shown):
         from brdfkit.inverse.photographs.result.files import write_files
 
         return write_files(self, folder)
+
+    def record(self) -> dict[str, Any]:
+        """Return the findings as numbers and sentences, for ``brdfkit svbrdf --json``."""
+        names = "smoothness", "residual", "held_out", "predicted", "notes", "seconds"
+        errors = None if self.held_out_errors is None else asdict(self.held_out_errors)
+        return {name: getattr(self, name) for name in names} | {"held_out_errors": errors}
 
     def document(self) -> Document:
         """Return the printed summary: a row for each map, notes, and the errors of renderings."""

@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.documents import Document, Paragraph, Table
 from brdfkit.core.documents.parts import SOFT
+from brdfkit.inverse.photographs.result.comparison import Comparison
 
 
 def describe_svbrdf(svbrdf: Any) -> Document:
@@ -33,6 +34,7 @@ def describe_svbrdf(svbrdf: Any) -> Document:
                 for note in (*_describe_fixed_parameters(svbrdf.fixed), *svbrdf.notes)
             ),
             *_describe_rendering_difference(svbrdf.residual, svbrdf.predicted.values()),
+            *_describe_held_out_errors(svbrdf.held_out_errors),
             Paragraph(
                 f"smoothness {svbrdf.smoothness:g}{chosen}; {svbrdf.seconds:.1f} s", kind=SOFT
             ),
@@ -62,6 +64,17 @@ def _describe_rendering_difference(
     text = (
         f"Mitsuba's renderings of the maps differ from the photographs by {100 * residual:.2g} % "
         f"(RMS); PSNR {min(psnr):.1f} to {max(psnr):.1f} dB."
+    )
+    return (Paragraph(text),)
+
+
+def _describe_held_out_errors(errors: Comparison | None) -> tuple[Paragraph, ...]:
+    """Return a sentence on the errors of photographs that were held out, if there are any."""
+    if errors is None:
+        return ()
+    text = (
+        f"The {len(errors.by_name)} photographs that were held out are predicted with errors of "
+        f"{100 * errors.median:.2g} % in the median and {100 * errors.high:.2g} % at 90 %."
     )
     return (Paragraph(text),)
 
