@@ -16,6 +16,7 @@ from brdfkit.inverse.photographs.capture.pictures.coding import Coding, to_codin
 from brdfkit.inverse.photographs.capture.pictures.masks import read_mask
 from brdfkit.inverse.photographs.capture.pictures.photograph_file import read_linear
 from brdfkit.inverse.photographs.capture.reading import ALMOST
+from brdfkit.materials.collections import public
 
 pytestmark = pytest.mark.usefixtures("mi")
 KINDS = ("diligent", "series", "psbox", "rti", "table", "turned_table", "named_table", "toml")
@@ -581,3 +582,17 @@ def test_a_mask_of_a_chrome_ball_is_a_disc(tmp_path):
     write_mask(tmp_path / "chrome" / "mask.png", np.arange(48) < np.full((48, 1), 12))
     with pytest.raises(BrdfkitError, match="is no disc, as it is 12 × 48"):
         load_photographs(folder)
+
+
+def test_a_downloaded_folder_is_found_by_its_name(tmp_path, monkeypatch):
+    monkeypatch.setattr(public, "find_cache_folder", lambda: tmp_path)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BrdfkitError, match="run 'brdfkit data get captures/psbox-cat'"):
+        load_photographs("captures/psbox-cat")
+    made = Made(mask=False).psbox(tmp_path / "captures" / "psbox-cat")
+    for k in range(12):
+        name = made / "Objects" / f"ball_{k}.png"
+        name.rename(made / "Objects" / f"Image_{k + 1:02d}.png")
+    (tmp_path / "here" / "captures" / "psbox-cat" / "maps").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "here")
+    assert load_photographs("captures/psbox-cat").name == "psbox-cat"

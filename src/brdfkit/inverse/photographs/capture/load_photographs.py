@@ -99,10 +99,13 @@ def load_photographs(
 def _find_folder(folder: str | Path) -> Path:
     """Return the path of a folder on this disk, also of one that `brdfkit data get` downloaded."""
     path = Path(folder)
+    # Results of a fit may lie in a folder of that name
+    if path.is_dir() and any(file.is_file() for file in path.iterdir()):
+        return path
+    if path.parts[:1] == (DOWNLOADED,) and len(path.parts) == 2:
+        return find_folder(path.as_posix())
     if path.is_dir():
         return path
-    if path.parts[:1] == (DOWNLOADED,):
-        return find_folder(path.as_posix())
     raise BrdfkitError(f"{folder}: there is no such folder; check the path.")
 
 
