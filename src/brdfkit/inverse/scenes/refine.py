@@ -19,11 +19,11 @@ from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress, make_step_counter
-from brdfkit.inverse.scenes.problem.by_picture import Cameras, Pictures, choose_sensors
-from brdfkit.inverse.scenes.problem.lamps import Lighting, Lights
-from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_unknowns
-from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
-from brdfkit.inverse.scenes.problem.targets import Target, read_targets
+from brdfkit.inverse.scenes.problem.by_picture import Cameras, Pictures
+from brdfkit.inverse.scenes.problem.lamps import Lights
+from brdfkit.inverse.scenes.problem.making_views import make_views
+from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT
+from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.unseen_parameters import make_no_effect_error
 from brdfkit.inverse.scenes.problem.views import Views, suppress_sampler_warnings
 from brdfkit.inverse.scenes.result.conclusions import make_refinement
@@ -167,7 +167,7 @@ def refine(
     if smoothness is not None:
         to_number("refine: smoothness", smoothness, least=0)
     targets = read_targets(pictures, accept_8_bit, mask)
-    views = _make_views(scene, targets, parameters, lights, cameras)
+    views = make_views(scene, targets, parameters, lights, cameras)
     with views.lighting.restored_after_errors() if views.lighting else nullcontext():
         return _search(views, starts, steps, smoothness, spp, seed, progress, began)
 
@@ -241,30 +241,3 @@ def _search_visible_numbers(
     own = np.where(unseen, views.start, state.residuals.x)
     state.residuals = replace(state.residuals, x=own)
     return state
-
-
-def _make_views(
-    scene: Any,
-    targets: list[Target],
-    parameters: Iterable[str] | Bounds | None,
-    lights: Lights | None,
-    cameras: Cameras | None,
-) -> Views:
-    """Return the scene, its searched parameters and its target pictures as `Views`."""
-    import mitsuba as mi
-
-    loaded = load_scene(scene, targets[0].size)
-    traversed, names = mi.traverse(loaded), tuple(target.name for target in targets)
-    lighting = None if lights is None else Lighting(traversed, lights, names)
-    sensors = choose_sensors(loaded, names, cameras, lighting is not None)
-    unknowns = choose_unknowns(traversed, parameters)
-    numbers = sum(len(unknown.start) for unknown in unknowns)
-    values = sum(np.count_nonzero(target.weights) for target in targets)
-    if not values or values < numbers <= PARAMETER_LIMIT:
-        raise BrdfkitError(
-            f"refine: {numbers} number{'s are' if numbers > 1 else ' is'} more than the {values} "
-            "values of the pictures that count, as they are neither masked nor clipped; give "
-            "larger or darker pictures, or name fewer."
-        )
-    integrator = make_integrator(loaded)
-    return Views(loaded, integrator, targets, traversed, unknowns, sensors, lighting)

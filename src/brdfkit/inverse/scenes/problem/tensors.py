@@ -1,4 +1,4 @@
-"""Converts tensors of a scene, such as textures and volumes, to independent numbers, and back.
+"""Converts entries of a scene, such as textures and volumes, to independent numbers, and back.
 
 Mitsuba's environment maps store their first and last column twice, once at each end. A search has
 to move a texel together with its copy, so it works on the independent numbers only.
@@ -65,6 +65,18 @@ def make_tensor(numbers: AnyArray, texels: IntArray) -> MitsubaObject:
     import mitsuba as mi
 
     return mi.TensorXf(np.ravel(numbers)[texels].astype(np.float32))
+
+
+def make_opaque_array(kind: type, values: AnyArray) -> MitsubaObject:
+    """Return a Dr.Jit array of type `kind` whose numbers do not become constants of kernels.
+
+    All values then share one kernel, which is compiled once.
+    """
+    import drjit as dr
+    import mitsuba as mi
+
+    numbers = [dr.opaque(mi.Float, float(v)) for v in values]
+    return numbers[0] if len(numbers) == 1 and kind is mi.Float else kind(*numbers)
 
 
 def find_independent_shape(texels: IntArray, wraps: bool) -> tuple[int, ...]:

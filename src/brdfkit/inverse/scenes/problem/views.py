@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObject
@@ -16,7 +15,7 @@ from brdfkit.inverse.scenes.problem.leverage import group_pixels_by_block
 from brdfkit.inverse.scenes.problem.parameters import Unknown
 from brdfkit.inverse.scenes.problem.places import find_sight
 from brdfkit.inverse.scenes.problem.targets import Target
-from brdfkit.inverse.scenes.problem.tensors import make_tensor
+from brdfkit.inverse.scenes.problem.tensors import make_opaque_array, make_tensor
 
 BOUND_DISTANCE = 1e-6  # a search coordinate counts as on a bound if it is nearer to it than this
 
@@ -233,17 +232,6 @@ def suppress_sampler_warnings() -> Iterator[None]:
         yield
     finally:
         mi.set_log_level(level)
-
-
-def make_opaque_array(kind: type, values: AnyArray) -> MitsubaObject:
-    """Return a Dr.Jit array of type `kind` whose numbers do not become constants of kernels.
-
-    All values then share one kernel, which is compiled once.
-    """
-    import mitsuba as mi
-
-    numbers = [dr.opaque(mi.Float, float(v)) for v in values]
-    return numbers[0] if len(numbers) == 1 and kind is mi.Float else kind(*numbers)
 
 
 def _check_picture_sizes(sensors: list[MitsubaObject], targets: list[Target]) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
 from brdfkit.core.jit.loops import raise_first_cause
-from brdfkit.inverse.scenes.problem.views import Views, make_opaque_array
+from brdfkit.inverse.scenes.problem.tensors import make_opaque_array
+from brdfkit.inverse.scenes.problem.views import Views
 
 DERIVATIVE_COST = 2.3  # time of a picture of derivatives, relative to a plain picture
 # Step of finite differences in a search coordinate; without bounds, relative to the coordinate
