@@ -8,6 +8,7 @@ from made_objects import Made, ball, directions, rows, shade, write_mask, write_
 from PIL import Image
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.diagnosis.lambert import fit_lambert
 from brdfkit.inverse.photographs.capture.folders import list_kinds
@@ -132,7 +133,8 @@ def test_the_focal_length_of_exif_tells_the_distance(tmp_path):
 def write_exr(path, values):
     import mitsuba as mi
 
-    mi.Bitmap(values.astype(np.float32)).write(str(path))
+    with use_two_threads():
+        mi.Bitmap(values.astype(np.float32)).write(str(path))
 
 
 def write_tiff(bits, **how):
