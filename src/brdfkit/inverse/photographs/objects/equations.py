@@ -6,7 +6,7 @@ light i, with the irradiance E_ic, it has the radiance
     L_ic = E_ic Σ_l a_lc f_l(v, l_i) max(n · l_i, 0).
 
 Its difference from the photographed value J_ic, in units of the scale σ (max(J_ic, 0) + δ E_ic), is
-the residual u_ic. Tukey's bisquare [Beaton and Tukey 1974] of the residuals' RMS u_i over the
+the residual u_ic. Tukey's bisquare [Beaton & Tukey 1974] of the residuals' RMS u_i over the
 channels lets photographs in which a pixel lies in a shadow count little or nothing:
 
     ρ(u) = c²/6 (1 - (1 - u²/c²)³) for u < c, and c²/6 beyond.

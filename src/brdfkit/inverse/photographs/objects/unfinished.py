@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import fields
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -51,7 +52,7 @@ def load_state(
     if not path.is_file():
         return None
     try:
-        with np.load(path) as content:
+        with path.open("rb") as stream, np.load(stream) as content:
             stored = {name: content[name] for name in content.files}
         if str(stored["checksum"]) != compute_checksum(capture, parameters):
             return None
@@ -75,7 +76,7 @@ def load_state(
             expected_normals=stored["expected_normals"],
             finished=int(stored["finished"]),
         )
-    except (OSError, ValueError, KeyError, EOFError) as error:
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
         raise BrdfkitError(f"{path}: it is damaged; delete it to begin again.") from error
 
 
