@@ -91,7 +91,8 @@ def to_error_maps(
     """Return maps (height, width) of standard errors, from those of the searched numbers.
 
     `errors` belong to the searched numbers `x`; both are (texels, numbers). A colour has the RMS
-    error of its channels, a normal the error of its direction [radians].
+    error of its channels. A normal has an error [radians] that 95 % of the angles to the true
+    normal exceed by a factor of at most 1.96, as with other maps.
     """
     by_name = {}
     for lobe, name in enumerate(parameters.lobes):
@@ -99,8 +100,25 @@ def to_error_maps(
         by_name[name] = np.sqrt((own**2).mean(axis=1))
     columns = parameters.shape_columns
     by_name |= parameters.shapes.propagate_errors(x[:, columns].T, errors[:, columns].T)
-    by_name["normal"] = np.sqrt((errors[:, parameters.normal_columns] ** 2).sum(axis=1))
+    by_name["normal"] = _compute_angle_errors(errors[:, parameters.normal_columns])
     return {name: error.reshape(shape) for name, error in by_name.items()}
+
+
+def _compute_angle_errors(errors: FloatArray) -> FloatArray:
+    """Return the errors (n,) of directions, of which 1.96 contain 95 % of the angles.
+
+    `errors` (n, 2) are the standard errors of x and y. The sum of both squared deviations is
+    about a multiple of χ² with 1 to 2 degrees of freedom, of the same mean and variance
+    [Satterthwaite 1946].
+    """
+    from scipy.special import gammaincinv
+
+    variances = errors**2
+    total = np.maximum(variances.sum(axis=1), 1e-300)
+    scale = np.maximum((variances**2).sum(axis=1), 1e-300) / total
+    freedom = np.clip(total / scale, 1, 2)
+    largest: FloatArray = 2 * scale * gammaincinv(freedom / 2, 0.95)
+    return np.sqrt(largest) / 1.96
 
 
 def predict_radiances(

@@ -35,8 +35,9 @@ from brdfkit.inverse.photographs.search.problem import Problem
 SAMPLES = 16  # samples per pixel of the renderings, evenly spread over the pixel
 ROUND_LIMIT = 5  # largest number of rounds of correction
 STEPS_PER_ROUND = 3  # few steps suffice, because each round begins near its minimum
-# a round is undone if more than this share of the difference to the photographs remains
-LARGEST_REMAINDER = 0.9
+# A round is undone if more than this share of the difference to the photographs remains: the first
+# one, which removes the blur, and later ones
+LARGEST_REMAINDERS = 1.0, *[0.9] * (ROUND_LIMIT - 1)
 
 
 @dataclass(frozen=True)
@@ -63,10 +64,10 @@ def refine_through_renderer(
     best = None
     try:
         best = render_maps(problem, fitted, capture)
-        for rounds in range(ROUND_LIMIT):
+        for rounds, remainder in enumerate(LARGEST_REMAINDERS):
             corrected = correct_maps(problem, best, rounds == 0, capture)
             trial = render_maps(problem, corrected, capture)
-            if not trial.difference < LARGEST_REMAINDER * best.difference:
+            if not trial.difference < remainder * best.difference:
                 return best, rounds
             best = trial
         return best, ROUND_LIMIT
