@@ -64,10 +64,8 @@ def part(values, k, value):
 
 
 ODD = {
-    "is black": lambda c: {"pictures": part(c.pictures, 3, 0)},
-    "03.exr: it has no usable value": lambda c: {"pictures": part(c.pictures, 3, 9)},
-    "00.exr: it has no usable value": lambda c: {"lost": c.pictures > -1},
-    "under a grazing light": lambda c: {"positions": part(c.positions, 3, [0.3, 0.3, 1e-3])},
+    "no picture has a usable value of the sample": lambda c: {"lost": c.pictures > -1},
+    "all is black, clipped, lost": lambda c: {"pictures": 0 * c.pictures},
     "positions: they should be finite": lambda c: {"positions": part(c.positions, 0, np.nan)},
     "none below": lambda c: {"intensities": part(c.intensities, 0, [1, -1, 1])},
     "intensities: they should be finite": lambda c: {"intensities": part(c.intensities, 0, np.inf)},
@@ -90,6 +88,28 @@ def test_odd_captures_are_one_sentence(capture, sentence):
     with pytest.raises(bk.BrdfkitError, match=sentence) as error:
         fit(dataclasses.replace(capture, **ODD[sentence](capture)))
     assert "\n" not in str(error.value)
+
+
+UNUSABLE = {
+    "black": lambda c: {"pictures": part(c.pictures, 3, 0)},
+    "clipped": lambda c: {"pictures": part(c.pictures, 3, 9)},
+    "grazing": lambda c: {"positions": part(c.positions, 3, [0.3, 0.3, 1e-3])},
+}
+
+
+@pytest.fixture(scope="module")
+def found_without_one(capture):
+    return fit(capture.select_lights(np.array([0, 1, 2, 4, 5, 6, 7])))
+
+
+@pytest.mark.parametrize("case", UNUSABLE)
+def test_a_photograph_that_shows_nothing_is_left_out(capture, found_without_one, case):
+    """It has no weight, so that the maps are those of the other photographs."""
+    odd = fit(dataclasses.replace(capture, **UNUSABLE[case](capture)))
+    assert any("Left out: 03.exr, where" in note for note in odd.notes)
+    assert len(odd.predicted) == 7
+    for name, values in found_without_one.maps.items():
+        np.testing.assert_allclose(odd.maps[name], values, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize(

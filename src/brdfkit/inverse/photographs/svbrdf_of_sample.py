@@ -13,6 +13,7 @@ from brdfkit.core.progress_bar import Progress, make_step_counter
 from brdfkit.inverse.photographs.arguments import choose_map_shape
 from brdfkit.inverse.photographs.capture.capture import Capture, downsample
 from brdfkit.inverse.photographs.capture.observations import Observations, sample_at_texels
+from brdfkit.inverse.photographs.capture.unusable import leave_out_unusable
 from brdfkit.inverse.photographs.maps.maps import Maps, to_error_maps
 from brdfkit.inverse.photographs.maps.residuals import describe_misfit
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
@@ -56,7 +57,7 @@ def fit_maps_of_sample(
     shape = choose_map_shape(photographs, resolution)
     clipped = photographs.clipped.mean() if photographs.lost is None else 0.0
     photographs = downsample(photographs, shape)
-    observed = Observations.collect(photographs, shape)
+    photographs, observed, left_out = leave_out_unusable(photographs, shape)
     lights = len(photographs.names)
     report = make_step_counter(progress, estimate_search_steps(lights, smoothness))
     problem = Problem(parameters, observed, report)
@@ -71,7 +72,7 @@ def fit_maps_of_sample(
             size=photographs.size,
             smoothness=float(fitted.tau),
             held_out=fitted.held_out,
-            notes=(*notes, *describe_capture(photographs, clipped, observed)),
+            notes=(*notes, *left_out, *describe_capture(photographs, clipped, observed)),
             seconds=time.perf_counter() - began,
             capture=photographs,
             **known,

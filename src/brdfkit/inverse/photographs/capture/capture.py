@@ -48,8 +48,8 @@ class Capture:
     Raises
     ------
     BrdfkitError
-        For shapes that do not fit each other, values that are not finite, pictures that are black,
-        a light or a camera that is not above the sample, and a camera that does not see all of it.
+        For shapes that do not fit each other, values that are not finite, a light or a camera that
+        is not above the sample, and a camera that does not see all of it.
     """
 
     pictures: FloatArray
@@ -151,8 +151,13 @@ class Capture:
 
     @property
     def excluded(self) -> BoolArray:
-        """The mask (lights, height, width, 3) of values that no fit may use: `lost` or clipped."""
-        return self.clipped if self.lost is None else self.lost
+        """The mask (lights, height, width, 3) of values that no fit may use.
+
+        These are values that are `lost` or clipped, and all values of black pictures.
+        """
+        black = ~(self.pictures.mean(axis=(1, 2, 3), dtype=float) > 0)
+        excluded = self.clipped if self.lost is None else self.lost
+        return excluded | black[:, None, None, None]
 
 
 def downsample(capture: Capture, shape: tuple[int, int]) -> Capture:

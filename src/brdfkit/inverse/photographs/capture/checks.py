@@ -43,13 +43,11 @@ def _set_field(capture: Any, name: str, value: object) -> None:
 
 
 def _check_pictures(capture: Any) -> None:
-    """Raise `BrdfkitError` for photographs that are black or have values that are not finite."""
+    """Raise `BrdfkitError` for photographs with values that are not finite."""
     for name, picture in zip(capture.names, capture.pictures, strict=True):
         if not np.isfinite(picture).all():
             bad = int((~np.isfinite(picture)).any(axis=2).sum())
             raise BrdfkitError(f"{name}: {bad:,} of its pixels are not finite.")
-        if not picture.mean(dtype=float) > 0:
-            raise BrdfkitError(f"{name}: it is black; leave it out, or check its exposure.")
 
 
 def _check_lights(capture: Any) -> None:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray
-from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.capture import Capture
 
 ARRAYS = "radiance", "weights", "to_light", "irradiance", "to_camera"
@@ -43,26 +42,22 @@ class Observations:
     def collect(cls, capture: Capture, shape: tuple[int, int]) -> Observations:
         """Return the observations of a `Capture` at the texels of maps of `shape` (height, width).
 
-        Raises `BrdfkitError` for a photograph without any usable value of the sample.
+        A photograph without any usable value of the sample has the weight 0.
         """
         points = capture.texel_centres(shape)
         radiance = sample_at_texels(capture, capture.pictures, shape)
         lost = sample_at_texels(capture, capture.excluded, shape) > 0
         to_light, irradiance = illuminate_points(points, capture.positions, capture.intensities)
         to_camera = np.array([find_directions(camera.origin, points) for camera in capture.cameras])
-        scale = np.maximum(radiance, 0) + DARK_OFFSET * radiance.mean()
         # Pixels at the edge do not count, because they also show the sample's surroundings
         for light in range(len(lost)):
             lost[light] |= ~capture.is_shown(light, points[:, :2])[:, None]
-        weights = np.where(lost, 0, 1 / scale**2)
-        shown = np.any(weights * irradiance > 0, axis=(1, 2))
+        shown = np.any(~lost & (irradiance > 0), axis=(1, 2))
         shown &= np.any(capture.counted, axis=(1, 2, 3))
-        for name, is_shown in zip(capture.names, shown, strict=True):
-            if not is_shown:
-                raise BrdfkitError(
-                    f"{name}: it has no usable value of the sample, as all is clipped, lost, "
-                    "within a pixel of the edge, or under a grazing light; leave this picture out."
-                )
+        lost[~shown] = True
+        brightness = radiance[shown].mean() if shown.any() else 1.0
+        scale = np.maximum(radiance, 0) + DARK_OFFSET * brightness
+        weights = np.where(lost, 0, 1 / scale**2)
         return cls(radiance, weights, to_light, irradiance, to_camera, shape)
 
     def select_lights(self, lights: IntArray) -> Observations:
@@ -91,6 +86,10 @@ class Observations:
         return self._apply_to_arrays(
             lambda values: values[:, blocks].reshape(-1, rows * columns, 3), (rows, columns)
         )
+
+    def find_usable_photographs(self) -> BoolArray:
+        """Return in which photographs (k,) any value of the sample counts."""
+        return np.any(self.weights > 0, axis=(1, 2))
 
     def find_lit_channels(self) -> BoolArray:
         """Return which of red, green and blue (3,) any light has; the others cannot be observed."""

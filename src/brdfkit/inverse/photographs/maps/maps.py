@@ -91,8 +91,8 @@ def to_error_maps(
     """Return maps (height, width) of standard errors, from those of the searched numbers.
 
     `errors` belong to the searched numbers `x`; both are (texels, numbers). A colour has the RMS
-    error of its channels. A normal has an error [radians] that 95 % of the angles to the true
-    normal exceed by a factor of at most 1.96, as with other maps.
+    error of its channels. The angle of a normal to the true one is within 1.96 of its error
+    [radians] with a probability of 95 %.
     """
     by_name = {}
     for lobe, name in enumerate(parameters.lobes):
@@ -105,7 +105,7 @@ def to_error_maps(
 
 
 def _compute_angle_errors(errors: FloatArray) -> FloatArray:
-    """Return the errors (n,) of directions, of which 1.96 contain 95 % of the angles.
+    """Return errors (n,) of directions: 95 % of their angles to the true ones are within 1.96.
 
     `errors` (n, 2) are the standard errors of x and y. The sum of both squared deviations is
     about a multiple of χ² with 1 to 2 degrees of freedom, of the same mean and variance

@@ -46,6 +46,9 @@ ROUGHER = 2.0  # how much rougher the maps may be that show which details are lo
 # Largest ratio that counts, of the error in the simulation to the error computed from the equations
 # of a texel
 LARGEST_ERROR_RATIO = 5.0
+# Lower limit of the simulated squared errors, after the lost details of the fitted and of the new
+# maps were compared
+SMALLEST_REMAINDER = 0.5
 SMALLEST_SHARE = 0.5  # lower limit of the share of the noise that is left in the residuals
 
 
@@ -78,7 +81,9 @@ def simulate_standard_errors(
 
     square = average((again.x - fitted.x) / share, ERROR_SIDE)
     details = average(lost, DETAIL_SIDE) - average(lost_again, DETAIL_SIDE)
-    square += np.maximum(details, 0) / (1 - 1 / ROUGHER**2) ** 2
+    total = square + details / (1 - 1 / ROUGHER**2) ** 2
+    # Chance may make the lost details negative
+    square = np.maximum(total, SMALLEST_REMAINDER * square)
     # What the photographs do not determine stays as uncertain as its range
     open_texels = is_undetermined(fitted.equations.hessian)
     return errors * np.sqrt(np.where(open_texels[:, None], np.maximum(square, 1), square))
