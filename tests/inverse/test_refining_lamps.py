@@ -20,6 +20,8 @@ from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.backward_derivatives import compute_error_and_gradient
 from brdfkit.inverse.scenes.search.forward_derivatives import compute_derivatives
+from brdfkit.inverse.scenes.search.gauss_newton import Search, _turns_back
+from brdfkit.inverse.scenes.search.normal_equations import Equations
 
 ALPHA, DIFFUSE = "ball.bsdf.alpha_u", "ball.bsdf.diffuse_reflectance"
 SUN = np.array([0.3, 0.8, -1]) / np.linalg.norm([0.3, 0.8, -1])
@@ -223,6 +225,17 @@ def test_an_error_leaves_all_lamps_burning(mi, pictures):
     names = mi.traverse(scene)
     assert [names[f"{name}.sampling_weight"] for name in LAMPS[:3]] == [1, 1, 1]
     assert np.array(names["point.intensity.value"]).max() == pytest.approx(9)
+
+
+def test_steps_that_undo_the_last_one_are_too_long():
+    """Searches for a lamp's place went back and forth for 17 steps, with the same samples."""
+    nothing = np.zeros((2, 1))
+    equations = Equations(np.zeros(2), np.eye(2), nothing, np.array([1.0, 4.0]))
+    state = Search(residuals=None, equations=equations, last_step=np.array([1.0, 1.0]))
+    assert _turns_back(np.array([-0.1, -0.9]), state)
+    assert not _turns_back(np.array([-0.9, -0.1]), state)
+    assert not _turns_back(np.array([0.9, 0.9]), state)
+    assert not _turns_back(np.array([-1.0, -1.0]), Search(residuals=None, equations=equations))
 
 
 def test_a_direction_is_a_unit_vector():

@@ -51,6 +51,7 @@ class Search:
     converged : whether no step would gain more than the noise.
     stuck : whether a step should gain, but none does, however short.
     worse : whether the search ended worse than the scene's own values, which then replace its end.
+    last_step : the last step (n,).
     """
 
     residuals: Residuals
@@ -60,6 +61,7 @@ class Search:
     converged: bool = False
     stuck: bool = False
     worse: bool = False
+    last_step: FloatArray | None = None
 
 
 def choose_initial_samples(views: Views) -> int:
@@ -110,6 +112,7 @@ def run_gauss_newton(
                 spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
                 state.residuals = Residuals.render(views, state.residuals.x, spp, seed)
             else:
+                state.last_step = step.x - state.residuals.x
                 state.residuals, state.steps = step, state.steps + 1
                 state.history.append((spp, step.error))
                 report()
@@ -131,6 +134,8 @@ def _find_step(
     assert equations is not None
     while True:
         step = solve_step(views, here, equations, damping)
+        if is_last and _turns_back(step, state):
+            step = step / 2
         trial = Residuals.render(views, here.x + step, 2 * here.spp, seed)
         gain, noise = here.compute_gain(trial)
         if _may_gain_by_noise(here, trial):
@@ -142,6 +147,18 @@ def _find_step(
             damping = max(damping * (BETTER if is_good else 1), DAMPING[1])
             return trial if gain > 0 or (is_last and hidden) else None, damping
         damping *= WORSE
+
+
+def _turns_back(step: FloatArray, state: Search) -> bool:
+    """Return whether a step undoes more than half of the last one, which was too long then.
+
+    Where noise makes the Hessian too small, steps of full length go back and forth without an end.
+    """
+    if state.last_step is None or state.equations is None:
+        return False
+    power = state.equations.power
+    undone = -float((step * power) @ state.last_step)
+    return undone > float((state.last_step * power) @ state.last_step) / 2
 
 
 def _may_gain_by_noise(here: Residuals, trial: Residuals) -> bool:
