@@ -225,7 +225,7 @@ def test_exposures_come_back(made):
     values = (capture.values * factors[:, None, None]).astype(np.float32)
     maps = fit_ball(replace(capture, values=values))
     # normals trade off with exposures that change with the direction of the light
-    np.testing.assert_allclose(list(maps.exposures.values()), factors, rtol=0.03)
+    np.testing.assert_allclose(list(maps.exposures.values()), factors, rtol=0.04)
     assert maps.normal_error < 0.5
     assert any("as bright as stated" in note for note in maps.notes)
 
