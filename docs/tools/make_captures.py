@@ -154,9 +154,10 @@ def write_normals(figures):
 def fill(page, name, lines):
     """Return the page with other lines between two marks."""
     before, _, after = page.partition(BEGIN.format(name))
-    return "\n".join(
-        [before + BEGIN.format(name), "", *lines, "", END.format(name)]
-    ) + after.partition(END.format(name))[2]
+    return (
+        "\n".join([before + BEGIN.format(name), "", *lines, "", END.format(name)])
+        + after.partition(END.format(name))[2]
+    )
 
 
 def main():
