@@ -18,7 +18,7 @@ from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.double_precision import to_scalar
 from brdfkit.inverse.photographs import Lights
 from brdfkit.inverse.photographs.arguments import to_texel_parameters
-from brdfkit.inverse.photographs.objects import fit_object, tile
+from brdfkit.inverse.photographs.objects import fit_object, svbrdf_of_object, tile
 from brdfkit.inverse.photographs.objects.equations import Reflection, compute_equations
 from brdfkit.inverse.photographs.objects.fit_pixels import split_weights
 from brdfkit.inverse.photographs.objects.frames import make_tangents, tilt
@@ -218,6 +218,62 @@ def test_a_clipped_photograph_does_not_stop_the_fit(made):
     assert abs(maps.normal_error - without.normal_error) < 0.05
 
 
+def test_maps_are_in_proportion_to_photographs():
+    capture, _, _ = photograph_ball(20, 8)
+    own = fit_ball(capture).state
+    dark = fit_ball(replace(capture, values=capture.values * np.float32(2.0**-20))).state
+    np.testing.assert_allclose(dark.weights * 2.0**20, own.weights, rtol=1e-4, atol=1e-7)
+    np.testing.assert_allclose(dark.normals, own.normals, atol=1e-6)
+    np.testing.assert_allclose(dark.weight_errors * 2.0**20, own.weight_errors, rtol=1e-4)
+
+
+def test_values_that_are_no_numbers_and_channels_without_light_do_not_count():
+    powers = 3.0 * np.eye(3)[np.arange(9) % 3]  # red, green and blue lights in turn
+    lights = replace(make_lights(9), intensities=powers)
+    capture, normals, _ = photograph_ball(24, lights=lights)
+    capture.values[1, 30:40] = np.nan
+    capture.values[2, 50:60, 0] = np.inf
+    capture.values[:, 99] = np.nan
+    normals = np.where(np.arange(len(normals))[:, None] < 9, np.nan, normals)
+    maps = fit_ball(replace(capture, normals=normals))
+    assert maps.normal_error < 0.6
+    assert "In 21 pixels some values are not finite; they do not count." in maps.notes
+    for values in (*maps.maps.values(), *maps.uncertainty.values(), maps.lights):
+        assert np.isfinite(values).all()
+
+
+def test_a_note_says_that_the_model_does_not_explain_the_photographs(made):
+    capture = made[0].select_lights(np.arange(4))
+    values = capture.values.copy()
+    values[:] = np.random.default_rng(0).exponential(size=values.shape)
+    maps = fit_ball(replace(capture, values=values))
+    assert any("do not trust the maps" in note for note in maps.notes)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda c: {"values": -c.values}, "all photographs are black, clipped or lost"),
+        (lambda c: {"lost": np.ones(c.values.shape, bool)}, "black, clipped or lost"),
+        (lambda c: {"values": c.values[:, 1:]}, r"values: its shape \(12,"),
+        (lambda c: {"names": ("a",) * 12}, "names: there should be 12"),
+        (lambda c: {"mask": c.mask & False}, "paint the object white"),
+        (lambda c: {"lights": replace(c.lights, directions=3 * c.lights.directions)}, "unit"),
+        (lambda c: {"lights": replace(c.lights, intensities=0 * c.lights.intensities)}, "above 0"),
+        (lambda c: {"lights": replace(c.lights, positions=0 * c.lights.directions)}, "z = 0"),
+        (lambda c: {"lights": replace(c.lights, axes=c.lights.directions + np.nan)}, "finite"),
+        (
+            lambda c: {"lights": replace(c.lights, directions=np.tile([0, 0, 1.0], (12, 1)))},
+            "lie in one plane",
+        ),
+    ],
+)
+def test_wrong_captures_are_one_sentence(made, change, sentence):
+    with pytest.raises(BrdfkitError, match=sentence) as error:
+        fit_ball(replace(made[0], **change(made[0])))
+    assert "\n" not in str(error.value)
+
+
 def test_exposures_come_back(made):
     capture, _, _ = made
     factors = np.exp(0.2 * np.sin(np.arange(12)))
@@ -264,6 +320,35 @@ def test_an_interrupted_fit_goes_on(made, monkeypatch, tmp_path):
     assert not (tmp_path / "unfinished.npz").exists()
 
 
+def test_a_stop_while_maps_are_compared_keeps_the_state(made, found, monkeypatch, tmp_path):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(svbrdf_of_object, "fit_object", lambda *_: found.state)
+    monkeypatch.setattr(svbrdf_of_object, "_compare", stop)
+    with pytest.raises(Interrupted) as error:
+        fit_ball(made[0], checkpoint=tmp_path, hold_out=4)
+    assert (tmp_path / "unfinished.npz").is_file()
+
+    def fail(*_):
+        raise BrdfkitError("unfinished.npz: cannot be written.")
+
+    monkeypatch.setattr(svbrdf_of_object, "save_state", fail)
+    monkeypatch.setattr(svbrdf_of_object, "load_state", lambda *_: None)
+    with pytest.raises(Interrupted) as error:
+        fit_ball(made[0], checkpoint=tmp_path, hold_out=4)
+    assert "its state could not be kept" in error.value.best.notes[1]
+
+
+def test_a_stop_before_there_are_maps_has_none(made):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as error:
+        fit_ball(made[0], progress=stop)
+    assert not isinstance(error.value, Interrupted)
+
+
 def test_the_state_of_other_photographs_is_not_used(made, tmp_path):
     from brdfkit.inverse.photographs.objects.unfinished import load_state, save_state
 
@@ -274,6 +359,11 @@ def test_the_state_of_other_photographs_is_not_used(made, tmp_path):
     assert load_state(tmp_path, capture, parameters) is not None
     other = replace(capture, values=capture.values * np.float32(1.1))
     assert load_state(tmp_path, other, parameters) is None
+    lost = np.zeros(capture.values.shape, bool)
+    lost[:, 97] = True
+    assert load_state(tmp_path, replace(capture, lost=lost), parameters) is None
+    nearby = replace(capture, pixel_size=1e-3, distance=0.5)
+    assert load_state(tmp_path, nearby, parameters) is None
     (tmp_path / "unfinished.npz").write_bytes(b"PK\3\4 damaged")
     with pytest.raises(BrdfkitError, match="it is damaged; delete it"):
         load_state(tmp_path, capture, parameters)

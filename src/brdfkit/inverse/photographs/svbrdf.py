@@ -19,6 +19,7 @@ from brdfkit.inverse.photographs.arguments import (
 )
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
+from brdfkit.inverse.photographs.objects.checks import prepare_object
 from brdfkit.inverse.photographs.objects.object_maps import ObjectMaps
 from brdfkit.inverse.photographs.objects.svbrdf_of_object import fit_maps_of_object
 from brdfkit.inverse.photographs.result.result import Svbrdf
@@ -112,6 +113,7 @@ def svbrdf(
     chosen = np.setdiff1d(np.arange(len(photographs.names)), hidden_indices)
     if isinstance(photographs, ObjectCapture):
         _check_arguments_of_object(name, resolution, anisotropic, smoothness)
+        photographs = prepare_object(photographs)
         hidden = photographs.select_lights(hidden_indices) if len(hidden_indices) else None
         fitted = photographs.select_lights(chosen) if len(hidden_indices) else photographs
         kept = None if checkpoint is None else Path(checkpoint)

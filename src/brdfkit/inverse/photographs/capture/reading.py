@@ -46,7 +46,7 @@ def read_object(listing: Listing, coding: Coding | None) -> ObjectCapture:
         values=values,
         mask=mask,
         lights=listing.lights,
-        names=tuple(path.name for path in listing.photographs),
+        names=_find_names(listing.photographs),
         lost=find_clipped(values, largest),
         normals=None if listing.normals is None else _find_normals(listing, mask),
         pixel_size=pixel_size,
@@ -113,6 +113,14 @@ def _read_values(
             )
     np.maximum(values, 0, out=values)
     return values, largest
+
+
+def _find_names(photographs: tuple[Path, ...]) -> tuple[str, ...]:
+    """Return names of photographs: those of their files, with their folders if they are equal."""
+    names = tuple(path.name for path in photographs)
+    if len(set(names)) == len(names):
+        return names
+    return tuple(f"{path.parent.name}/{path.name}" for path in photographs)
 
 
 def _check_shape(path: Path, picture: FloatArray, shape: tuple[int, ...], other: str) -> None:

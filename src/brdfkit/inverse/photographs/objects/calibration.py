@@ -45,6 +45,8 @@ SPREAD_ROUNDS = 4  # rounds in which the spread of usual weights is estimated
 # The pixels that show highlights lie together, and others may differ more from them
 SPREAD_FACTOR = 1.5
 LEAST_SPREAD = 0.1  # smallest spread of usual weights, as a share of the weight
+SMALLEST_SPREAD = 1e-3  # the same, as a share of the typical ratio of values to irradiance
+SMALLEST_BRIGHTNESS = 1e-30  # smallest ratio of values to irradiance, for photographs of nothing
 
 
 @dataclass(frozen=True)
@@ -156,8 +158,10 @@ def fit_from_start(tile: Tile, known: Calibration) -> Pixels:
 def _measure_brightness(capture: ObjectCapture, chosen: AnyArray) -> float:
     """Return the mean ratio of the values of some pixels to the irradiance."""
     _, irradiance = capture.lights.illuminate(capture.points[chosen])
-    ratio = capture.values[:, chosen] / np.maximum(irradiance, 1e-30)
-    return float(max(ratio.mean(), 1e-12))
+    values = capture.values[:, chosen]
+    lit = irradiance > 0
+    ratio = np.divide(values, irradiance, out=np.zeros(values.shape), where=lit)
+    return float(max(ratio.sum() / max(lit.sum(), 1), SMALLEST_BRIGHTNESS))
 
 
 def _find_shapes(
@@ -233,7 +237,7 @@ def _measure_photographs(
     The exposure of a photograph is the median ratio of its values to the predicted ones. Only
     ratios of exposures can be found, so their geometric mean stays 1.
     """
-    logarithms, residuals, counted = [], [], 0.0
+    logarithms, residuals, count = [], [], 0.0
     predictions = predict(tile, known.reflection, pixels.normals, pixels.weights)
     _, irradiance = capture.lights.illuminate(capture.points[chosen])
     lost = np.zeros((1, 1, 1), bool) if capture.lost is None else capture.lost[:, chosen]
@@ -241,18 +245,23 @@ def _measure_photographs(
     for light, (predicted, faces) in enumerate(predictions):
         values = capture.values[light, chosen].astype(float)
         counts = faces & ~lost[light].any(axis=1) & (values.mean(axis=1) > 0)
-        share = predicted.mean(axis=1) / irradiance[light].mean(axis=1)
+        power = irradiance[light].mean(axis=1)
+        share = np.divide(predicted.mean(axis=1), power, out=np.zeros(len(power)), where=power > 0)
         counts &= share > known.dark_offset
         ratio = values[counts].mean(axis=1) / predicted[counts].mean(axis=1)
         logarithms.append(float(np.median(np.log(ratio))) if counts.any() else 0.0)
         floor = known.dark_offset * irradiance[light]
         bright = counts & (share > known.brightness / 2)
-        residuals.append(compute_relative_differences(predicted, values, floor)[bright].ravel())
-        counted += counts.mean()
-    count = CHANNELS * counted
-    free = max(count - CHANNELS * len(known.parameters.lobes) - 2, 0.2 * count)
+        differences = compute_relative_differences(predicted, values, floor)
+        lit = irradiance[light] > 0
+        residuals.append(differences[bright[:, None] & lit])
+        count += (counts[:, None] & lit).sum() / len(counts)
+    channels = int((irradiance > 0).any(axis=(0, 1)).sum())
+    free = max(count - channels * len(known.parameters.lobes) - 2, 0.2 * count)
     joined = np.concatenate(residuals)
-    noise = 1.4826 * float(np.median(np.abs(joined))) * np.sqrt(count / max(free, 1e-9))
+    # where nothing is as bright as predicted, the noise stays what it was taken for
+    deviation = 1.4826 * float(np.median(np.abs(joined))) if len(joined) else known.noise
+    noise = deviation * np.sqrt(count / max(free, 1e-9))
     change = np.exp(np.array(logarithms) - np.mean(logarithms))
     return replace(known, exposures=known.exposures * change, noise=max(noise, 1e-4))
 
@@ -273,7 +282,8 @@ def _measure_usual_weights(tile: Tile, pixels: Pixels, known: Calibration) -> Ca
             weight = pixels.weights[:, c, k]
             sure = variance <= np.quantile(variance, BEST_SHARE)
             usual[c, k], spread = _find_centre_and_spread(weight[sure], variance[sure])
-            spread = max(spread, LEAST_SPREAD * usual[c, k], 1e-4)
+            least = SMALLEST_SPREAD * known.brightness
+            spread = max(spread, LEAST_SPREAD * usual[c, k], least)
             spreads[c, k] = SPREAD_FACTOR * spread
     return replace(known, usual_weights=usual, spreads=spreads)
 

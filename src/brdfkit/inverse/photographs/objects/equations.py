@@ -125,9 +125,12 @@ def compute_equations(
         to_light, irradiance = tile.illuminate(light)
         values, counts = tile.read_values(light)
         lobe_values, slopes = _differentiate_lobes(tile, reflection, n, to_light)
+        # a channel without light tells nothing
         factors = [
-            1 / (dr.maximum(v, 0) + offset * e) for v, e in zip(values, irradiance, strict=True)
+            dr.select(e > 0, 1 / (dr.maximum(v, 0) + offset * e), 0)
+            for v, e in zip(values, irradiance, strict=True)
         ]
+        counts &= sum(irradiance) > 0
         residuals = [
             factors[c] * (irradiance[c] * _mix(a[c], lobe_values) - values[c])
             for c in range(CHANNELS)

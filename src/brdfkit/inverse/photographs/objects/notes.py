@@ -11,6 +11,8 @@ from brdfkit.inverse.photographs.objects.fit_object import FittedObject
 
 # Differences of exposures from 1 that are mentioned
 MENTIONED_EXPOSURE = 0.03
+# Standard deviation of relative residuals above which the model does not explain the photographs
+MENTIONED_NOISE = 0.25
 FEWEST_LIGHTS = 3  # photographs that determine the normal and the colour of a matt pixel
 MENTIONED_SHARE = 0.01  # share of pixels above which they are mentioned
 # A highlight's weight is unknown where its standard error is this share of the usual spread
@@ -20,6 +22,7 @@ MATT_SHARE = 0.005  # usual weight of a highlight beside the diffuse one, below 
 MENTIONED_BRIGHT = 0.05  # share of pixels with a reflectance above 1
 # A photograph is named whose residuals are this many times the median of all photographs
 WORSE = 2.0
+ALMOST = 0.8  # share of a photograph that counts, if its residuals are usual ones
 
 
 def describe_object_fit(
@@ -39,7 +42,18 @@ def _find_doubts(
     known = state.calibration
     assert known is not None
     yield from _describe_exposures(capture.names, known.exposures)
-    few = float((state.lights < FEWEST_LIGHTS).mean())
+    if known.noise > MENTIONED_NOISE:
+        yield (
+            f"The model does not explain the photographs, from which it differs by "
+            f"{100 * known.noise:.0f} %: do not trust the maps. Check the lights and how the "
+            "photographs are coded, or choose another model; mirrors need a light for each normal."
+        )
+    if len(capture.names) == FEWEST_LIGHTS:
+        yield (
+            f"{FEWEST_LIGHTS} photographs do not tell highlights from normals, so the errors are "
+            "larger than stated; take more, or choose the model lambert for a matt object."
+        )
+    few = float((state.lights < ALMOST * FEWEST_LIGHTS).mean())
     if few > MENTIONED_SHARE:
         yield (
             f"In {100 * few:.0f} % of the pixels fewer than {FEWEST_LIGHTS} photographs count, the "

@@ -47,8 +47,9 @@ def estimate_normals(
             """Add the share of one photograph to the normal equations."""
             w, irradiance = tile.illuminate(light)
             values, counts = tile.read_values(light)
-            value = sum(values) / sum(irradiance)
-            weight = dr.select(counts & ((value > dark) | (not robust)), 1.0, 0.0)
+            power = sum(irradiance)
+            value = dr.select(power > 0, sum(values) / power, 0)
+            weight = dr.select(counts & (power > 0) & ((value > dark) | (not robust)), 1.0, 0.0)
             if weighs:
                 weight = weight / (dr.abs(value - dot(b, w)) + smallest)
             products = w.x * w.x, w.x * w.y, w.x * w.z, w.y * w.y, w.y * w.z, w.z * w.z
@@ -76,11 +77,14 @@ def _estimate_albedos(tile: Tile, n: Vector, robust: bool) -> FloatArray:
         cosine = dr.select(counts, dr.maximum(dot(n, w), 0), 0)
         if robust:  # lights that graze the surface come with shadows
             cosine = dr.select(cosine > 0.2, cosine, 0)
-        shares = [cosine * v / e for v, e in zip(values, irradiance, strict=True)]
-        return light + 1, [s + t for s, t in zip(sums, [*shares, cosine * cosine], strict=True)]
+        channels = list(zip(values, irradiance, strict=True))
+        shares = [dr.select(e > 0, cosine * v / e, 0) for v, e in channels]
+        squares = [dr.select(e > 0, cosine * cosine, 0) for e in irradiance]
+        return light + 1, [s + t for s, t in zip(sums, [*shares, *squares], strict=True)]
 
-    *values, squares = _loop(tile, add, [dr.zeros(real, tile.count) for _ in range(CHANNELS + 1)])
-    albedos = [np.pi * np.array(dr.maximum(v, 0) / dr.maximum(squares, 1e-9)) for v in values]
+    sums = _loop(tile, add, [dr.zeros(real, tile.count) for _ in range(2 * CHANNELS)])
+    pairs = zip(sums[:CHANNELS], sums[CHANNELS:], strict=True)
+    albedos = [np.pi * np.array(dr.maximum(v, 0) / dr.maximum(s, 1e-9)) for v, s in pairs]
     return np.stack(albedos, axis=1)
 
 

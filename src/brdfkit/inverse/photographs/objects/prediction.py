@@ -15,6 +15,8 @@ from brdfkit.inverse.photographs.objects.fit_pixels import split_weights
 from brdfkit.inverse.photographs.objects.frames import dot, evaluate_lobes
 from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile, to_vector
 
+TINY = 1e-30  # smallest value by which differences are divided
+
 
 def predict(
     tile: Tile, reflection: Reflection, normals: FloatArray, weights: FloatArray
@@ -41,7 +43,7 @@ def compute_relative_differences(
 
     `floor` is added to the values, so that relative differences of dark pixels stay finite.
     """
-    return (predicted - values) / np.maximum(np.maximum(values, 0) + floor, 1e-12)
+    return (predicted - values) / np.maximum(np.maximum(values, 0) + floor, TINY)
 
 
 def predict_photographs(

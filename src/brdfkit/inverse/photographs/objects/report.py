@@ -85,16 +85,17 @@ def _describe_checks(maps: Any) -> list[dict[str, str]]:
         }
     ]
     truth = maps.capture.normals
-    if truth is not None:
+    if truth is not None and maps.normal_error is not None:
         own = maps.maps["normal"][maps.mask]
         angle = np.degrees(np.arccos(np.clip((own * truth).sum(axis=1), -1, 1)))
-        picture = maps.capture.to_picture(angle)
+        known = np.isfinite(angle)
+        picture = maps.capture.to_picture(np.where(known, angle, 0))
         checks.append(
             {
                 "name": "errors of the normals",
                 "picture": _colour(maps, picture, 0, LARGEST_ANGLE, VALUE_SCALE),
                 "scale": f"angle to the true normal, 0° (dark) to {LARGEST_ANGLE:g}° (bright); "
-                f"{angle.mean():.2f}° in the mean",
+                f"{angle[known].mean():.2f}° in the mean",
             }
         )
     return checks

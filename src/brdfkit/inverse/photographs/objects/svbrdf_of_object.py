@@ -14,6 +14,7 @@ from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.progress_bar import Progress, make_step_counter
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.objects.checks import check_lights_of_fit
 from brdfkit.inverse.photographs.objects.equations import Reflection
 from brdfkit.inverse.photographs.objects.fit_object import (
     FittedObject,
@@ -44,7 +45,7 @@ def fit_maps_of_object(
     """Return the maps of an object; `hidden` are photographs that are held out.
 
     `checkpoint` is a folder where an interrupted search keeps its state, and finds it again. On
-    Ctrl-C `Interrupted` holds the maps so far, as soon as there are any.
+    Ctrl-C `Interrupted` holds the maps so far; before there are any, it is a KeyboardInterrupt.
     """
     began = time.perf_counter()
     if len(capture.names) < FEWEST_PHOTOGRAPHS:
@@ -52,24 +53,38 @@ def fit_maps_of_object(
             f"{capture.name}: {len(capture.names)} photographs of an object are too few to fit; "
             f"its normals need {FEWEST_PHOTOGRAPHS} lights or more."
         )
+    check_lights_of_fit(capture)
     report = make_step_counter(progress, estimate_reports(capture, parameters))
-    interrupted = False
     state = None if checkpoint is None else load_state(checkpoint, capture, parameters)
     try:
         state = fit_object(capture, parameters, state, report)
-    except Interrupted as stop:
-        state, interrupted = stop.best, True
-        if state.calibration is None or not state.finished:
-            raise
+        maps = _collect(capture, hidden, label, state, began)
+    except KeyboardInterrupt as stop:
+        state = stop.best if isinstance(stop, Interrupted) else state
+        notes = _keep_state(checkpoint, state, capture, parameters)
+        if state is None or state.calibration is None or not state.finished:
+            raise KeyboardInterrupt from None
+        maps = _collect(capture, hidden, label, state, began, (INTERRUPTED, *notes))
+        raise Interrupted(maps, f"{capture.name}: there are maps so far") from None
     if checkpoint is not None:
-        if interrupted:
-            save_state(checkpoint, state, capture, parameters)
-        else:
-            (checkpoint / NAME).unlink(missing_ok=True)
-    maps = _collect(capture, hidden, label, state, interrupted, began)
-    if interrupted:
-        raise Interrupted(maps, f"{capture.name}: there are maps so far")
+        (checkpoint / NAME).unlink(missing_ok=True)
     return maps
+
+
+def _keep_state(
+    checkpoint: Path | None,
+    state: FittedObject | None,
+    capture: ObjectCapture,
+    parameters: TexelParameters,
+) -> tuple[str, ...]:
+    """Save the state of an interrupted fit, if there is any; return a note if that fails."""
+    if checkpoint is None or state is None or state.calibration is None:
+        return ()
+    try:
+        save_state(checkpoint, state, capture, parameters)
+    except BrdfkitError as error:
+        return (f"The same command begins again, because its state could not be kept: {error}",)
+    return ()
 
 
 def _collect(
@@ -77,10 +92,10 @@ def _collect(
     hidden: ObjectCapture | None,
     label: str,
     state: FittedObject,
-    interrupted: bool,
     began: float,
+    interrupted: tuple[str, ...] = (),
 ) -> ObjectMaps:
-    """Return the result of a search that ended, or was interrupted."""
+    """Return the result of a search that ended, or was interrupted, which sentences say."""
     known = state.calibration
     assert known is not None
     names = known.parameters.lobes
@@ -96,7 +111,7 @@ def _collect(
     fitted = compared.get("fitted_errors")
     by_name = fitted.by_name if fitted else {}
     notes = (
-        *((INTERRUPTED,) if interrupted else ()),
+        *interrupted,
         *capture.notes,
         *(() if interrupted else describe_object_fit(capture, state, by_name)),
     )
@@ -153,7 +168,7 @@ def _compare(
         matt = Reflection(labels.model("lambert"), {}, known.dark_offset)
         errors = predict_photographs(hidden, matt, normals, albedos[:, :, None])
         compared["lambertian_errors"] = Comparison.collect(errors)
-    if capture.normals is not None:
+    if capture.normals is not None and np.isfinite(capture.normals).all(axis=1).any():
         compared["normal_error"] = _measure_angle(state.normals, capture.normals)
         compared["lambertian_normal_error"] = _measure_angle(normals, capture.normals)
     return compared
@@ -171,5 +186,7 @@ def _fit_lambertian(capture: ObjectCapture, brightness: float) -> tuple[FloatArr
 
 
 def _measure_angle(a: FloatArray, b: FloatArray) -> float:
-    """Return the mean angle [degrees] between unit vectors (n, 3)."""
-    return float(np.degrees(np.arccos(np.clip((a * b).sum(axis=1), -1, 1))).mean())
+    """Return the mean angle [degrees] between unit vectors (n, 3), where both are known."""
+    cosines = (a * b).sum(axis=1)
+    cosines = cosines[np.isfinite(cosines)]
+    return float(np.degrees(np.arccos(np.clip(cosines, -1, 1))).mean())

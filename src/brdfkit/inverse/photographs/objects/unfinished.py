@@ -15,6 +15,7 @@ from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.inverse.photographs.objects.calibration import Calibration
 from brdfkit.inverse.photographs.objects.fit_object import FittedObject
+from brdfkit.inverse.photographs.objects.tile import split_into_tiles
 
 NAME = "unfinished.npz"
 EVERY = 97  # only every such pixel enters the checksum of photographs, which is fast
@@ -84,12 +85,12 @@ def compute_checksum(capture: ObjectCapture, parameters: TexelParameters) -> str
     """Return a checksum of photographs, their lights and a model, to which a state belongs."""
     model = parameters.model
     words = model.type_name(), model.changed_options(), sorted(parameters.fixed.items())
-    digest = hashlib.sha256(repr((words, capture.names)).encode())
-    for values in (
-        capture.values[:, ::EVERY],
-        capture.mask,
-        capture.lights.directions,
-        capture.lights.intensities,
-    ):
-        digest.update(np.ascontiguousarray(values).tobytes())
+    pixels = capture.values.shape[1]
+    tiles = len(split_into_tiles(pixels, len(capture.lights)))
+    places = capture.pixel_size, capture.distance, tiles
+    digest = hashlib.sha256(repr((words, capture.names, places)).encode())
+    lights = (getattr(capture.lights, field.name) for field in fields(capture.lights))
+    lost = None if capture.lost is None else capture.lost[:, ::EVERY]
+    for values in (capture.values[:, ::EVERY], lost, capture.mask, *lights):
+        digest.update(b"none" if values is None else np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()
