@@ -21,6 +21,8 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.ball.ball import WHITE, draw_ball
 from brdfkit.images.ball.lights import studio_radiance
 from brdfkit.images.ball.normals import find_normals
+from brdfkit.inverse.photographs.objects.fit_object import FittedObject
+from brdfkit.inverse.photographs.result.comparison import Comparison
 from brdfkit.regression.certainty import Certainty
 from brdfkit.volumes.summary.summary import summarise
 
@@ -66,7 +68,7 @@ def refinement():
     said = ("no step gains more than the noise", True, ((16, 0.1), (64, 0.01)), (NASTY,), (NASTY,))
     pictures = (np.full((2, 2, 3), 0.5),)
     spent = (64, 2, 80.0, 1.5)
-    rest = (certainty, {}, pictures, pictures)
+    rest = (certainty, {}, (NASTY,), pictures, pictures)
     return bk.Refinement({NASTY: 0.2}, 0.1, 0.05, *spent, *said, *rest)
 
 
@@ -93,6 +95,38 @@ def textures():
         misfit=np.ones((2, 2)),
         residual=0.01,
         predicted={NASTY: 40.0},
+    )
+
+
+def an_object():
+    """An `ObjectMaps` of four pixels."""
+    lights = bk.photographs.Lights(np.eye(3), np.ones((3, 3)))
+    names = tuple(f"{NASTY}{k}" for k in range(3))
+    capture = bk.photographs.ObjectCapture(
+        NASTY, np.full((3, 4, 3), 0.5, np.float32), np.full((2, 2), True), lights, names
+    )
+    comparison = Comparison(0.02, 0.05, 0.01, 0.04, {NASTY: (0.02, 0.05)})
+    weights = np.full((2, 2, 3), 0.5)
+    return bk.photographs.ObjectMaps(
+        name=NASTY,
+        model="lambert",
+        maps={"reflectance": weights, "normal": np.tile([0.0, 0.0, 1.0], (2, 2, 1))},
+        fixed={},
+        mask=capture.mask,
+        uncertainty={"reflectance": np.full((2, 2), 0.01)},
+        lights=np.full((2, 2), 3.0),
+        exposures=dict.fromkeys(names, 1.0),
+        noise=0.01,
+        fitted_errors=comparison,
+        held_out_errors=comparison,
+        lambertian_errors=comparison,
+        normal_error=1.0,
+        lambertian_normal_error=2.0,
+        notes=(NASTY,),
+        seconds=1.5,
+        capture=capture,
+        held_out_capture=capture,
+        state=FittedObject.begin(4, 1),
     )
 
 
@@ -128,6 +162,7 @@ def shown():
         bk.Reproduction(NASTY, ()),
         refinement(),
         textures(),
+        an_object(),
         rendering,
         rendering.errors(),
         bk.gallery([[(NASTY, named), fit]], spp=2, size=32),
