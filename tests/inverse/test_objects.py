@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from glossy_ball import ALPHA, F0, angles, fit_ball, make_lights, photograph_ball, shade
+from scipy.ndimage import maximum_filter
 
 import brdfkit as bk
 from brdfkit.cli import main
@@ -22,8 +23,10 @@ from brdfkit.inverse.photographs.objects import fit_object, svbrdf_of_object, ti
 from brdfkit.inverse.photographs.objects.equations import Reflection, compute_equations
 from brdfkit.inverse.photographs.objects.fit_pixels import split_weights
 from brdfkit.inverse.photographs.objects.frames import make_tangents, tilt
+from brdfkit.inverse.photographs.objects.notes import describe_object_fit
 from brdfkit.inverse.photographs.objects.photometric_stereo import estimate_normals
 from brdfkit.inverse.photographs.objects.prediction import predict
+from brdfkit.inverse.photographs.objects.scene import format_object_xml
 from brdfkit.inverse.photographs.objects.small_systems import compute_step, compute_variances
 from brdfkit.inverse.photographs.objects.tile import Tile, to_array, to_vector
 from brdfkit.model import labels
@@ -283,7 +286,9 @@ def test_exposures_come_back(made):
     # normals trade off with exposures that change with the direction of the light
     np.testing.assert_allclose(list(maps.exposures.values()), factors, rtol=0.04)
     assert maps.normal_error < 0.5
-    assert any("as bright as stated" in note for note in maps.notes)
+    furthest = max(maps.exposures, key=lambda name: abs(np.log(maps.exposures[name])))
+    note = next(note for note in maps.notes if "equally strong" in note)
+    assert f"found that of {furthest} " in note
 
 
 def test_tiles_change_nothing(made, monkeypatch):
@@ -407,6 +412,29 @@ def test_the_scene_looks_like_the_prediction(mi, found, tmp_path):
     assert rendered[~found.mask].mean() < 0.1 * predicted[found.mask].mean()
 
 
+def test_the_edge_of_the_dark_side_is_dark(mi, found, tmp_path):
+    found.write(tmp_path)
+    light = np.array([0.9, 0.1, 0.3])
+    scene = mi.load_file(str(tmp_path / "object.xml"))
+    params = mi.traverse(scene)
+    params["lamp.to_world"] = mi.ScalarTransform4f().look_at(
+        [0, 0, 0], (-light).tolist(), [0, 0, 1]
+    )
+    params.update()
+    rendered = np.array(mi.render(scene, spp=16))[..., :3]
+    dark = maximum_filter(found.relight(light).max(axis=2), 5) == 0
+    assert dark.any()
+    assert rendered[dark].max() == 0
+
+
+def test_the_scene_has_the_irradiance_of_a_lamp_nearby(found):
+    lights = to_lamps(found.capture.lights)
+    capture = replace(found.capture, lights=lights, pixel_size=0.001)
+    xml = format_object_xml(replace(found, capture=capture), {n: n for n in found.maps}, "mask.png")
+    _, irradiance = lights.illuminate(np.zeros((1, 3)))
+    assert f'value="{", ".join(repr(float(v)) for v in irradiance[0, 0])}"' in xml
+
+
 def test_the_page_shows_photographs_that_were_held_out(found, tmp_path):
     found.write(tmp_path)
     page = (tmp_path / "report.html").read_text()
@@ -421,6 +449,32 @@ def test_the_summary_says_how_well_it_goes(found):
     assert "3 held out" in text
     assert "9 fitted" in text
     assert f"{found.normal_error:.2f}° off in the mean" in text
+    assert "noise of the photographs alone" in text
+
+
+def test_notes_become_sentences_and_rounding_errors_zero(found):
+    tiny = found.maps | {"specular_reflectance": found.maps["specular_reflectance"] * 1e-9}
+    notes = "there is no mask.", "lights.txt states no intensities."
+    text = str(replace(found, maps=tiny, notes=notes))
+    assert "There is no mask." in text
+    assert "lights.txt states" in text
+    assert "e-" not in text.split("normal")[0]
+
+
+def test_the_page_of_an_interrupted_fit_has_no_empty_table(found, tmp_path):
+    nothing = dict.fromkeys(("fitted_errors", "held_out_errors", "lambertian_errors"))
+    replace(found, **nothing, uncertainty={}).write(tmp_path)
+    page = (tmp_path / "report.html").read_text()
+    assert "median, adapted" not in page
+    assert page.count("<table") == 1
+
+
+def test_reflectances_above_one_and_photographs_that_do_not_fit_are_noted(found):
+    state = replace(found.state, weights=found.state.weights * 4)
+    by_name = dict.fromkeys(found.capture.names, (0.02, 0.05)) | {"03.png": (0.3, 0.5)}
+    text = " ".join(describe_object_fit(found.capture, state, by_name))
+    assert "reflectance is above 1" in text
+    assert "Worst explained: 03.png (30 %); 2 % is usual" in text
 
 
 def test_the_command_fits_holds_out_and_says_so(tmp_path):

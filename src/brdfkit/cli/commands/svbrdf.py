@@ -27,11 +27,13 @@ from brdfkit.core.interrupts import Interrupted
     "--resolution",
     type=click.IntRange(4, 8192),
     metavar="N",
-    help="Texels along the longer side of a map. Default: as many as a photograph "
-    "has pixels, at most 512.",
+    help="Texels along the longer side of a map of a flat sample. Default: as many as a "
+    "photograph has pixels, at most 512.",
 )
 @click.option(
-    "--anisotropic", is_flag=True, help="Fit two roughnesses and their directions at each texel."
+    "--anisotropic",
+    is_flag=True,
+    help="Fit two roughnesses and their directions at each texel of a flat sample.",
 )
 @click.option(
     "--fixed",
@@ -43,7 +45,8 @@ from brdfkit.core.interrupts import Interrupted
     "--smoothness",
     type=float,  # `brdfkit.photographs.svbrdf` checks its range
     metavar="X",
-    help="Allowed difference between neighbouring texels; smaller values give smoother maps. "
+    help="Allowed difference between neighbouring texels of a flat sample; smaller values give "
+    "smoother maps. "
     "Default: chosen by photographs that are held out.",
 )
 @click.option(
@@ -82,7 +85,7 @@ def svbrdf(
     chrome ball, or with a table of light directions. An object's maps have the photographs' pixels.
 
     Ctrl-C keeps the maps so far; for an object, the same command then goes on from there. See
-    docs/how_to/photographs.md.
+    docs/how_to/photographs.md and docs/how_to/photographs_of_objects.md.
     """
     from brdfkit.cli.arguments import use_results_folder
     from brdfkit.inverse.photographs import svbrdf as fit_maps

@@ -8,10 +8,15 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray
 from brdfkit.core.files import make_folder, write_safely
 from brdfkit.inverse.photographs.objects.report import write_report
-from brdfkit.inverse.photographs.objects.scene import format_object_xml
-from brdfkit.inverse.photographs.result.files import ERROR, REPORT, write_or_remove_map
-
-LIGHTS, MASK, SCENE = "lights.exr", "mask.png", "object.xml"
+from brdfkit.inverse.photographs.objects.scene import format_object_xml, pad_maps
+from brdfkit.inverse.photographs.result.files import (
+    ERROR,
+    LIGHTS,
+    MASK,
+    OBJECT_SCENE,
+    REPORT,
+    write_or_remove_map,
+)
 
 
 def write_files(maps: Any, folder: str | Path) -> list[Path]:
@@ -20,14 +25,14 @@ def write_files(maps: Any, folder: str | Path) -> list[Path]:
     make_folder(folder)
     files = {name: f"{name}.exr" for name in maps.maps}
     written = []
-    for name, values in maps.maps.items():
+    for name, values in pad_maps(maps).items():
         # Components of normals lie between -1 and 1, but colours between 0 and 1
         pixels = (values + 1) / 2 if name == "normal" else values
         written += write_or_remove_map(folder / files[name], pixels)
         written += write_or_remove_map(folder / f"{name}{ERROR}.exr", maps.uncertainty.get(name))
     written += write_or_remove_map(folder / LIGHTS, maps.lights)
     _write_mask(folder / MASK, maps.mask)
-    scene, report = folder / SCENE, folder / REPORT
+    scene, report = folder / OBJECT_SCENE, folder / REPORT
     with write_safely(scene) as beside:
         Path(beside).write_text(format_object_xml(maps, files, MASK), encoding="utf-8")
     write_report(maps, report)

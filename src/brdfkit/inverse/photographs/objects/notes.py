@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.names import join_words
+from brdfkit.core.names import format_percent, join_words
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.objects.fit_object import FittedObject
 
@@ -14,6 +14,7 @@ MENTIONED_EXPOSURE = 0.03
 # Standard deviation of relative residuals above which the model does not explain the photographs
 MENTIONED_NOISE = 0.25
 FEWEST_LIGHTS = 3  # photographs that determine the normal and the colour of a matt pixel
+ALMOST = 0.8  # share of a photograph that counts, if its residuals are usual ones
 MENTIONED_SHARE = 0.01  # share of pixels above which they are mentioned
 # A highlight's weight is unknown where its standard error is this share of the usual spread
 UNKNOWN_SHARE = 0.9
@@ -22,7 +23,8 @@ MATT_SHARE = 0.005  # usual weight of a highlight beside the diffuse one, below 
 MENTIONED_BRIGHT = 0.05  # share of pixels with a reflectance above 1
 # A photograph is named whose residuals are this many times the median of all photographs
 WORSE = 2.0
-ALMOST = 0.8  # share of a photograph that counts, if its residuals are usual ones
+SMALLEST_WORSE = 0.02  # median relative error below which no photograph is named
+BRIGHTEST = 0.95  # quantile of the diffuse reflectance that should be 1 at most
 
 
 def describe_object_fit(
@@ -41,7 +43,7 @@ def _find_doubts(
     """Yield a sentence for each doubt."""
     known = state.calibration
     assert known is not None
-    yield from _describe_exposures(capture.names, known.exposures)
+    yield from _describe_exposures(capture, known.exposures)
     if known.noise > MENTIONED_NOISE:
         yield (
             f"The model does not explain the photographs, from which it differs by "
@@ -59,36 +61,68 @@ def _find_doubts(
             f"In {100 * few:.0f} % of the pixels fewer than {FEWEST_LIGHTS} photographs count, the "
             "others being in the shadow or clipped: there neighbours and usual values decide."
         )
+    yield from _describe_highlights(state)
+    diffuse = state.weights[:, :, 0].max(axis=1)
+    bright = float((diffuse > 1).mean())
+    if bright > MENTIONED_BRIGHT:
+        yield (
+            f"The diffuse reflectance is above 1 in {_format_share(bright)} of the pixels: the "
+            "intensities of the lights, which are 1 where nothing states them, are not in the "
+            "units of the photographs. All reflectances are too large by one factor, probably "
+            f"{np.quantile(diffuse, BRIGHTEST):.2g} or more."
+        )
+    yield from _describe_worst(by_name)
+
+
+def _describe_highlights(state: FittedObject) -> Iterator[str]:
+    """Yield a sentence for each lobe of highlights that the photographs hardly show."""
+    known = state.calibration
+    assert known is not None
     for k, name in enumerate(known.parameters.lobes[1:], 1):
         spread = known.spreads[:, k]
         unknown = (state.weight_errors[:, :, k] > UNKNOWN_SHARE * spread).all(axis=1)
         if known.usual_weights[:, k].max() < MATT_SHARE * np.median(state.weights[:, :, 0]):
-            yield f"The object looks matt: {name} is about 0 nearly everywhere."
+            yield (
+                f"The object looks matt: {name} is about 0 nearly everywhere, and the shape of "
+                "its highlights is unknown."
+            )
         elif unknown.mean() > MENTIONED_UNKNOWN:
             yield (
-                f"In {100 * unknown.mean():.0f} % of the pixels no photograph shows the highlight: "
-                f"{name} is the usual one there. More lights would show it."
+                f"In {_format_share(float(unknown.mean()))} of the pixels no photograph shows the "
+                f"highlight: {name} has its usual value there. More lights would show it."
             )
-    bright = float((state.weights[:, :, 0] > 1).any(axis=1).mean())
-    if bright > MENTIONED_BRIGHT:
-        yield (
-            f"The diffuse reflectance is above 1 in {100 * bright:.0f} % of the pixels: the stated "
-            "intensities of the lights are not in the units of the photographs, so all "
-            "reflectances are too large by one factor."
-        )
+
+
+def _describe_worst(by_name: dict[str, tuple[float, float]]) -> Iterator[str]:
+    """Yield a sentence on photographs whose errors are larger than usual."""
     medians = {name: median for name, (median, _) in by_name.items()}
     usual = float(np.median(list(medians.values()))) if medians else 0.0
-    worse = [name for name, median in medians.items() if median > WORSE * usual]
+    limit = max(SMALLEST_WORSE, WORSE * usual)
+    worse = sorted((name for name in medians if medians[name] > limit), key=lambda n: -medians[n])
     if worse:
-        yield (f"Worst explained: {join_words(worse[:5])}; the light may be elsewhere than stated.")
-
-
-def _describe_exposures(names: tuple[str, ...], exposures: FloatArray) -> Iterator[str]:
-    """Yield a sentence on photographs whose exposure is not the stated one."""
-    furthest = int(np.argmax(np.abs(np.log(exposures))))
-    if abs(exposures[furthest] - 1) > MENTIONED_EXPOSURE:
+        named = [f"{name} ({_format_share(medians[name])})" for name in worse[:5]]
         yield (
-            "The photographs do not agree on the strength of their lights: the fit took "
-            f"{names[furthest]} as {exposures[furthest]:.2f} times as bright as stated, and the "
-            f"others {exposures.min():.2f} to {exposures.max():.2f} times."
+            f"Worst explained: {join_words(named)}; {_format_share(usual)} is usual. The directions "
+            "of these lights may be wrong."
         )
+
+
+def _describe_exposures(capture: ObjectCapture, exposures: FloatArray) -> Iterator[str]:
+    """Yield a sentence on photographs whose exposure is not the given one."""
+    furthest = int(np.argmax(np.abs(np.log(exposures))))
+    if abs(exposures[furthest] - 1) <= MENTIONED_EXPOSURE:
+        return
+    others = np.delete(exposures, furthest)
+    found = (
+        f"that of {capture.names[furthest]} {exposures[furthest]:.2f} times as strong, and the "
+        f"others {others.min():.2f} to {others.max():.2f} times"
+    )
+    if not np.ptp(capture.lights.intensities, axis=0).any():
+        yield f"The lights are not equally strong: the fit found {found}."
+    else:
+        yield f"The strengths of the lights are not quite as given: the fit found {found}."
+
+
+def _format_share(share: float) -> str:
+    """Return a share of 1 as a percentage."""
+    return format_percent(100 * share)

@@ -42,7 +42,8 @@ class ObjectMaps(Shown):
         The standard error (height, width) of each map, that of the normal in radians, for the noise
         of the photographs. Empty where Ctrl-C ended the search.
     lights : ndarray, shape (height, width)
-        How many photographs tell something of a pixel: the others have it in the shadow or clipped.
+        How many photographs tell something of a pixel: in the others it is in the shadow or
+        clipped.
     exposures : dict of str to float
         The factor of the stated light in each photograph, which the fit found.
     noise : float
@@ -122,7 +123,7 @@ class ObjectMaps(Shown):
         if not np.isfinite(length) or length == 0:
             raise wrong_value_error("direction", direction, "a vector towards the light")
         power = to_array("irradiance", irradiance)
-        if power.shape not in ((), (1,), (3,)) or not (power >= 0).all():
+        if power.shape not in ((), (1,), (3,)) or not (np.isfinite(power) & (power >= 0)).all():
             raise wrong_value_error("irradiance", irradiance, "a number, or three, 0 or above")
         lights = Lights((towards / length)[None], np.broadcast_to(power, (1, 3)).astype(float))
         return self.predict(lights)[0]
@@ -174,7 +175,8 @@ class ObjectMaps(Shown):
         list of Path
             The files: an OpenEXR file for each map and, with ``_error`` in its name, for its
             standard error; ``lights.exr``; ``mask.png``; ``object.xml``, a scene under the first
-            light; and ``report.html``.
+            light; and ``report.html``. In the files of maps, pixels around the object have the
+            values of its edge, so that textures can interpolate.
 
         Raises
         ------
@@ -192,6 +194,8 @@ class ObjectMaps(Shown):
     def record(self) -> dict[str, Any]:
         """Return the findings as numbers and sentences, for ``brdfkit svbrdf --json``."""
         names = (
+            "name",
+            "model",
             "fixed",
             "exposures",
             "noise",

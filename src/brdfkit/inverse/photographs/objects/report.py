@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.documents import Paragraph, Table
+from brdfkit.core.documents.parts import SOFT
 from brdfkit.core.pages import page
 from brdfkit.core.pages.images import apply_colour_map, encode_jpeg, encode_png, shrink_picture
 from brdfkit.core.version import __version__
@@ -16,6 +18,8 @@ MARGIN = 4  # pixels around the object that are shown
 VALUE_SCALE, DIFFERENCE_SCALE = "viridis", "RdBu_r"
 LARGEST_DIFFERENCE = 0.3  # relative difference from a photograph at the ends of the colour scale
 PHOTOGRAPHS = 12  # largest number of photographs on the page
+# Share of the brightest map that white shows at least, so that maps of about 0 look black
+DARKEST_WHITE = 0.02
 GREY = 0.5  # what is outside of the object in maps of errors
 LARGEST_ANGLE = 10.0  # error of a normal at the end of the colour scale [degrees]
 SHADOW_SHARE = 0.02  # share of the white level below which a photograph has no relative difference
@@ -24,13 +28,15 @@ SHADOW_SHARE = 0.02  # share of the white level below which a photograph has no 
 def write_report(maps: Any, path: Path) -> None:
     """Write the HTML report of an `ObjectMaps` to a file."""
     document = maps.document()
-    table, errors, *paragraphs = document.parts
+    paragraphs = [part for part in document.parts if isinstance(part, Paragraph)]
+    tables = [part for part in document.parts if isinstance(part, Table)]
     page.write_page(
         "object.html",
         path,
         title=document.title,
-        tables=[(part.columns, part.rows) for part in (errors, table)],
-        notes=[paragraph.text for paragraph in paragraphs],
+        tables=[(part.columns, part.rows) for part in reversed(tables)],
+        notes=[part.text for part in paragraphs if part.kind != SOFT],
+        explanations=[part.text for part in paragraphs if part.kind == SOFT],
         maps=[_describe_map(maps, name) for name in maps.maps],
         checks=_describe_checks(maps),
         photographs=_describe_photographs(maps),
@@ -63,7 +69,8 @@ def _describe_map(maps: Any, name: str) -> dict[str, str | None]:
         shown = np.where(maps.mask[..., None], (values + 1) / 2, GREY)
         picture, scale = encode_png(_crop(maps, shown)), "x, y and z as red, green and blue"
     else:
-        white = max(1e-9, float(np.quantile(own, 0.99)))
+        brightest = max(float(np.quantile(part, 0.99)) for part in _list_weights(maps))
+        white = max(1e-9, DARKEST_WHITE * brightest, float(np.quantile(own, 0.99)))
         picture, scale = encode_jpeg(_crop(maps, values / white)), f"white is {white:.3g}"
     entry = {"name": name, "picture": picture, "scale": scale, "error": None, "error_scale": None}
     if errors is not None:
@@ -74,6 +81,11 @@ def _describe_map(maps: Any, name: str) -> dict[str, str | None]:
     return entry
 
 
+def _list_weights(maps: Any) -> list[FloatArray]:
+    """Return the weights of all lobes, of the object's pixels alone."""
+    return [values[maps.mask] for name, values in maps.maps.items() if name != "normal"]
+
+
 def _describe_checks(maps: Any) -> list[dict[str, str]]:
     """Return the template's entries for the number of photographs, and the errors of normals."""
     count = len(maps.capture.names)
@@ -81,7 +93,8 @@ def _describe_checks(maps: Any) -> list[dict[str, str]]:
         {
             "name": "photographs that count",
             "picture": _colour(maps, maps.lights, 0, count, VALUE_SCALE),
-            "scale": f"0 (dark) to {count} (bright); in the others a pixel is shadowed or clipped",
+            "scale": f"0 (dark) to {count} (bright); in the others the pixel is in the shadow or "
+            "clipped",
         }
     ]
     truth = maps.capture.normals
@@ -130,7 +143,8 @@ def _describe_photograph(
     limits = -LARGEST_DIFFERENCE, LARGEST_DIFFERENCE
     return {
         "name": name,
-        "errors": f"errors {100 * errors[0]:.2g} % in the median, {100 * errors[1]:.2g} % at 90 %",
+        "errors": f"errors: median {100 * errors[0]:.2g} %, 90th percentile "
+        f"{100 * errors[1]:.2g} %",
         "photograph": encode_jpeg(_crop(maps, photograph / white)),
         "prediction": encode_jpeg(_crop(maps, predicted / white)),
         "difference": _colour(maps, difference, *limits, DIFFERENCE_SCALE),

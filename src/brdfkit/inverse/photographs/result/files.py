@@ -14,18 +14,20 @@ from brdfkit.inverse.photographs.result.report import write_report
 from brdfkit.model import Model
 
 MISFIT, SCENE, REPORT = "misfit.exr", "sample.xml", "report.html"
+LIGHTS, MASK, OBJECT_SCENE = "lights.exr", "mask.png", "object.xml"  # files of objects only
 ERROR = "_error"  # suffix of the names of maps that hold standard errors
+OTHERS = MISFIT, SCENE, REPORT, LIGHTS, MASK, OBJECT_SCENE
 
 
 def make_output_folder(model: type[Model], folder: str | Path) -> None:
-    """Make a folder for the files of an `Svbrdf`, before a long search for its maps begins.
+    """Make a folder for the files of a result, before a long search for its maps begins.
 
     Raises `BrdfkitError` unless every file that `write_files` may write can be written there;
     `model` is the class whose maps will be searched.
     """
     make_folder(folder)
     maps = *model.parameters, "normal", ANGLE
-    names = *(f"{name}{end}.exr" for name in maps for end in ("", ERROR)), MISFIT, SCENE, REPORT
+    names = *(f"{name}{end}.exr" for name in maps for end in ("", ERROR)), *OTHERS
     for name in names:
         require_writable(Path(folder) / name)
 

@@ -31,7 +31,7 @@ def describe_svbrdf(svbrdf: Any) -> Document:
             Table(rows, ("map", ">5 %", ">median", ">95 %", ">± median")),
             *(
                 Paragraph(note)
-                for note in (*_describe_fixed_parameters(svbrdf.fixed), *svbrdf.notes)
+                for note in (*describe_fixed_parameters(svbrdf.fixed), *svbrdf.notes)
             ),
             *_describe_rendering_difference(svbrdf.residual, svbrdf.predicted.values()),
             *_describe_held_out_errors(svbrdf.held_out_errors),
@@ -42,11 +42,11 @@ def describe_svbrdf(svbrdf: Any) -> Document:
     )
 
 
-def _describe_fixed_parameters(values: dict[str, float]) -> tuple[str, ...]:
+def describe_fixed_parameters(values: dict[str, float]) -> tuple[str, ...]:
     """Return a sentence on the parameters with one value everywhere, if there are any."""
     if not values:
         return ()
-    equal = ", ".join(f"{name} = {value:g}" for name, value in values.items())
+    equal = ", ".join(f"{name} = {value:.3g}" for name, value in values.items())
     at_normal = "; at normal incidence the specular reflectance counts times f0"
     return (f"Everywhere {equal}{at_normal if 'f0' in values else ''}.",)
 
