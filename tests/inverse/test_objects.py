@@ -29,6 +29,7 @@ from brdfkit.inverse.photographs.objects.prediction import predict
 from brdfkit.inverse.photographs.objects.scene import format_object_xml
 from brdfkit.inverse.photographs.objects.small_systems import compute_step, compute_variances
 from brdfkit.inverse.photographs.objects.tile import Tile, to_array, to_vector
+from brdfkit.mitsuba_bridge.scene_file import load_scene_file
 from brdfkit.model import labels
 
 SCALE = 0.05
@@ -285,7 +286,7 @@ def test_exposures_come_back(made):
     maps = fit_ball(replace(capture, values=values))
     # normals trade off with exposures that change with the direction of the light
     np.testing.assert_allclose(list(maps.exposures.values()), factors, rtol=0.04)
-    assert maps.normal_error < 0.5
+    assert maps.normal_error < maps.lambertian_normal_error / 4
     furthest = max(maps.exposures, key=lambda name: abs(np.log(maps.exposures[name])))
     note = next(note for note in maps.notes if "equally strong" in note)
     assert f"found that of {furthest} " in note
@@ -403,7 +404,7 @@ def test_the_scene_looks_like_the_prediction(mi, found, tmp_path):
         "normal.exr",
         "mask.png",
     }
-    scene = mi.load_file(str(tmp_path / "object.xml"))
+    scene = load_scene_file(tmp_path / "object.xml")
     rendered = np.array(mi.render(scene, spp=64))[..., :3]
     predicted = found.predict(found.capture.lights.select(np.array([0])))[0]
     bright = predicted.mean(axis=2) > 0.1 * predicted.max()
