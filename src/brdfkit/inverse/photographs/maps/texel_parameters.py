@@ -8,7 +8,7 @@ evaluated in the texel's frame around n. The texel then has the radiance
     L_i = E_i max(n · l_i, 0) Σ_l a_l f_l(v, l_i).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import drjit as dr
@@ -23,9 +23,6 @@ from brdfkit.model import Model
 
 STEEPEST_SLANT = 0.65  # largest |x| and |y| of the unit normals that a search tries
 CHANNELS = 3
-
-# for each lobe its radiances (lights, texels), at weight 1 and irradiance 1
-Lobes = list[FloatArray]
 
 
 @dataclass(frozen=True)
@@ -90,57 +87,73 @@ class TexelParameters:
 
         `observed` holds the directions of the lights and cameras, and the irradiances.
         """
-        lobes, _ = self.evaluate_lobes(x, observed, differentiate=False)
+        lobes = self._compute_lobes(x, observed)
         weights = x[:, : self.shape_columns.start].reshape(len(x), -1, CHANNELS)
         shown = sum(lobe[..., None] * weights[:, k] for k, lobe in enumerate(lobes))
         radiances: FloatArray = shown * observed.irradiance
         return radiances
 
     @in_turn
-    def evaluate_lobes(
-        self, x: FloatArray, observed: Observations, differentiate: bool = True
-    ) -> tuple[Lobes, list[Lobes]]:
-        """Return the model's lobes for texels with searched numbers `x`, and their derivatives.
-
-        The derivatives are with respect to each number of the shapes and the normal; there are none
-        unless `differentiate`. `x` is (texels, numbers), `observed` holds the directions of lights
-        and cameras.
-        """
+    def _compute_lobes(self, x: FloatArray, observed: Observations) -> list[FloatArray]:
+        """Return the radiances (lights, n) of each lobe, at weight 1 and irradiance 1."""
         lights, texels = observed.to_light.shape[:2]
-        arrays = [
+        numbers = [
             double_precision.to_array(np.tile(column, lights))
             for column in x[:, self.shape_columns.start : self.normal_columns.stop].T
         ]
         to_light = double_precision.to_vector(observed.to_light.reshape(-1, 3))
         to_camera = double_precision.to_vector(observed.to_camera.reshape(-1, 3))
-        if differentiate:
-            for array in arrays:
-                dr.enable_grad(array)
-        lobes = self._evaluate_in_drjit(arrays, to_light, to_camera)
-        values, derivatives = [dr.detach(lobe) for lobe in lobes], []
-        for array in arrays if differentiate else ():
-            dr.clear_grad(lobes)
-            dr.set_grad(array, 1)
-            dr.enqueue(dr.ADMode.Forward, array)
-            dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
-            derivatives.append([dr.grad(lobe) for lobe in lobes])
-        # one kernel for all, because they have many expressions in common
-        dr.eval(values, derivatives)
+        lobes, _ = self.evaluate_lobes(
+            numbers, self.make_fixed_values(), to_light, to_camera, differentiate=False
+        )
+        dr.eval(lobes)
+        return [np.array(lobe).reshape(lights, texels) for lobe in lobes]
 
-        def to_numpy(lobes: Sequence[JitFloat]) -> Lobes:
-            """Return the lobes' arrays of Dr.Jit as arrays of NumPy (lights, texels)."""
-            return [np.array(lobe).reshape(lights, texels) for lobe in lobes]
+    def make_fixed_values(self) -> dict[str, JitFloat]:
+        """Return the shape parameters with one value everywhere, as arrays of Dr.Jit."""
+        return {name: double_precision.to_scalar(value) for name, value in self.fixed.items()}
 
-        return to_numpy(values), [to_numpy(lobes) for lobes in derivatives]
+    def evaluate_lobes(
+        self,
+        numbers: list[JitFloat],
+        fixed: Mapping[str, JitFloat],
+        to_light: JitVector,
+        to_camera: JitVector,
+        differentiate: bool = True,
+    ) -> tuple[list[JitFloat], list[list[JitFloat]]]:
+        """Return each lobe times the cosine to the normal, and derivatives by each number.
+
+        `numbers` holds the searched numbers of the shape parameters, and x and y of the normal, in
+        arrays of Dr.Jit; `fixed` is from `make_fixed_values`. There are no derivatives unless
+        `differentiate`. A kernel's loop may call this method.
+        """
+        if not differentiate:
+            return self._evaluate_in_drjit(numbers, fixed, to_light, to_camera), []
+        # Within a loop that is recorded, derivatives are switched off unless they are resumed
+        with dr.resume_grad():
+            # The sums are new arrays, because those from outside of the loop cannot be changed
+            numbers = [number + 0 for number in numbers]
+            for number in numbers:
+                dr.enable_grad(number)
+            lobes = self._evaluate_in_drjit(numbers, fixed, to_light, to_camera)
+            derivatives = []
+            for number in numbers:
+                dr.clear_grad(lobes)
+                dr.set_grad(number, 1)
+                dr.enqueue(dr.ADMode.Forward, number)
+                dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
+                derivatives.append([dr.grad(lobe) for lobe in lobes])
+            return [dr.detach(lobe) for lobe in lobes], derivatives
 
     def _evaluate_in_drjit(
-        self, arrays: list[JitFloat], to_light: JitVector, to_camera: JitVector
+        self,
+        numbers: list[JitFloat],
+        fixed: Mapping[str, JitFloat],
+        to_light: JitVector,
+        to_camera: JitVector,
     ) -> list[JitFloat]:
-        """Return each lobe times the cosine to the normal, for all pairs of lights and texels.
-
-        `arrays` holds the searched numbers of the shape parameters, and x and y of the normal.
-        """
-        *shapes, x, y = arrays
+        """Return each lobe times the cosine to the normal; see `evaluate_lobes`."""
+        *shapes, x, y = numbers
         z = dr.sqrt(dr.maximum(1 - x * x - y * y, 1e-4))
         normal = double_precision.Vector(x, y, z)
         # The tangent is the x axis projected onto the surface, as in Mitsuba's normal maps
@@ -155,7 +168,7 @@ class TexelParameters:
         lit = (wi.z > 1e-3) & (wo.z > 1e-3)
         up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
         wi, safe_wo = _select_vector(lit, wi, up), _select_vector(lit, wo, up)
-        values |= {name: double_precision.to_scalar(v) for name, v in self.fixed.items()}
+        values |= fixed
         lobes = [lobe for _, lobe in self.model.bind(values).terms()]
         return [dr.select(lit, (lobe.eval(wi, safe_wo) + 0 * x) * safe_wo.z, 0) for lobe in lobes]
 

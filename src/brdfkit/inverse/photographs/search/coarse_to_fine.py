@@ -25,7 +25,8 @@ COARSEST_SIDE = 4  # number of texels along the longer side of the first maps
 NOISE_ROUNDS = 5  # largest number of searches, after each of which the noise is estimated again
 # No further search is made if the new estimate of the noise exceeds this share of the previous one
 SETTLED = 0.7
-SWEEPS = 2  # how often each texel tries its neighbours' numbers, and keeps those that fit better
+# How often badly fitted texels try their neighbours' numbers, and keep those that fit better
+SWEEPS = 2
 
 
 def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tuple[int, int]]]:
@@ -95,7 +96,7 @@ def fit_with_restarts(
     x = fit_all_texels(problem, x, strength)
     other = restart_unexplained_texels(problem, x, noise)
     for _ in range(SWEEPS):
-        other = copy_better_neighbours(problem, other)
+        other = copy_better_neighbours(problem, other, noise)
     if (other != x).any():
         x = fit_all_texels(problem, other, strength)
     return x

@@ -8,14 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
+from brdfkit.inverse.photographs.search.normal_equations import (
+    KernelObservations,
+    sum_equations,
+)
 
-BLOCK = 8192  # number of texels whose equations are computed at once, to limit the memory
 # Added to a Hessian, as a share of its diagonal, because undetermined numbers make it singular
 RIDGE = 1e-9
 
@@ -74,47 +78,16 @@ class Problem:
 
         `x` (texels, numbers) holds the searched numbers of the texels.
         """
-        return self._compute_equations(x, differentiate=False).error
+        return sum_equations(self.parameters, x, self._photographs, differentiate=False)[0]
 
     def compute_equations(self, x: FloatArray) -> Equations:
         """Return the Gauss-Newton equations of each texel at the searched numbers `x`."""
-        return self._compute_equations(x, differentiate=True)
+        return Equations(*sum_equations(self.parameters, x, self._photographs, differentiate=True))
 
-    def _compute_equations(self, x: FloatArray, differentiate: bool) -> Equations:
-        """Return the equations at `x`; unless `differentiate`, they have no derivatives."""
-        texels, count, lobes = len(x), self.parameters.count, len(self.parameters.lobes)
-        error = np.zeros(texels)
-        gradient = np.zeros((texels, count) if differentiate else 0)
-        hessian = np.zeros((texels, count, count) if differentiate else 0)
-        for first in range(0, texels, BLOCK):
-            rows = slice(first, min(first + BLOCK, texels))
-            part = self.observed.select_texels(rows)
-            values, derivatives = self.parameters.evaluate_lobes(x[rows], part, differentiate)
-            for c in range(CHANNELS):
-                of_channel = [CHANNELS * lobe + c for lobe in range(lobes)]
-                weights = x[rows][:, of_channel].T
-                light = part.irradiance[..., c]
-                root = np.sqrt(part.weights[..., c])
-                shown = sum(w * lobe for w, lobe in zip(weights, values, strict=True))
-                residual = root * (light * shown - part.radiance[..., c])
-                error[rows] += (residual * residual).sum(axis=0)
-                if not differentiate:
-                    continue
-                own = of_channel + list(range(self.parameters.shape_columns.start, count))
-                slopes = [
-                    sum(w * slope for w, slope in zip(weights, by_lobe, strict=True))
-                    for by_lobe in derivatives
-                ]
-                factor = root * light
-                columns = [factor * column for column in (*values, *slopes)]
-                for a, column in zip(own, columns, strict=True):
-                    gradient[rows, a] += (column * residual).sum(axis=0)
-                    for b, other in zip(own, columns, strict=True):
-                        if b >= a:
-                            hessian[rows, a, b] += (column * other).sum(axis=0)
-        if differentiate:
-            hessian += np.triu(hessian, 1).transpose(0, 2, 1)
-        return Equations(error, gradient, hessian)
+    @cached_property
+    def _photographs(self) -> KernelObservations:
+        """The observations as kernels read them."""
+        return KernelObservations.collect(self.observed)
 
     def estimate_noise(self, errors: FloatArray) -> float:
         """Return the variance of relative radiances, from the squared residuals (n,) of texels.

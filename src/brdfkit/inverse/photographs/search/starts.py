@@ -19,6 +19,7 @@ WIDTHS = 0.08, 0.2, 0.45
 START_WEIGHT = 0.1  # weight of every lobe at the start, except for the diffuse one
 MATT_SHARE = 0.6  # share of the observations, the darkest ones, that count as free of highlights
 DOUBTFUL = 2  # a texel is restarted if its residual is more than this multiple of the noise
+SUSPECT = 1.5  # a texel tries its neighbours' numbers if its residual is more than this multiple
 RESTART_STEPS = 10
 # Shifts (rows, columns) to the eight texels, 1 and 3 texels away, whose numbers a texel tries
 OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
@@ -74,20 +75,26 @@ def restart_unexplained_texels(problem: Problem, x: FloatArray, noise: float) ->
     return x
 
 
-def copy_better_neighbours(problem: Problem, x: FloatArray) -> FloatArray:
+def copy_better_neighbours(problem: Problem, x: FloatArray, noise: float) -> FloatArray:
     """Return the numbers `x` (texels, numbers), replaced by neighbours' where these fit better.
 
-    A texel tries the median of the texels around it and the numbers of eight texels nearby, so that
-    good numbers spread, as matches do in [Barnes et al. 2009].
+    A texel whose residual exceeds the `noise` tries the median of the texels around it and the
+    numbers of eight texels nearby, so that good numbers spread, as matches do in
+    [Barnes et al. 2009].
     """
-    grid = x.reshape(*problem.observed.shape, -1)
     errors = problem.compute_errors(x)
+    tried = np.flatnonzero(compute_misfit(errors, noise, problem.observed) > SUSPECT)
+    if not len(tried):
+        return x
+    part = problem.with_observations(problem.observed.select_texels(tried))
+    grid, x, errors = x.reshape(*problem.observed.shape, -1), x.copy(), errors[tried]
     median = median_filter(grid, size=(3, 3, 1), mode="nearest")
     for candidate in (median, *(_shift_grid(grid, *offset) for offset in OFFSETS)):
-        candidate = candidate.reshape(x.shape)
-        there = problem.compute_errors(candidate)
+        own = candidate.reshape(x.shape)[tried]
+        there = part.compute_errors(own)
         better = there < errors
-        x, errors = np.where(better[:, None], candidate, x), np.where(better, there, errors)
+        x[tried[better]] = own[better]
+        errors = np.where(better, there, errors)
         problem.report()
     return x
 
