@@ -102,8 +102,8 @@ def _store(
             for other, product in zip(own[k:], row[1:], strict=True):
                 hessians[column, other] = hessians.get((column, other), 0) + product
     texel = dr.arange(whole, texels)
-    gradient = dr.zeros(real, texels * count)
-    hessian = dr.zeros(real, texels * count**2)
+    gradient: JitFloat = dr.zeros(real, texels * count)
+    hessian: JitFloat = dr.zeros(real, texels * count**2)
     for column, value in gradients.items():
         dr.scatter(gradient, value, texel * count + column)
     for (column, other), value in hessians.items():
