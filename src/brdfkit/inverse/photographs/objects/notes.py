@@ -102,8 +102,8 @@ def _describe_worst(by_name: dict[str, tuple[float, float]]) -> Iterator[str]:
     if worse:
         named = [f"{name} ({_format_share(medians[name])})" for name in worse[:5]]
         yield (
-            f"Worst explained: {join_words(named)}; {_format_share(usual)} is usual. The directions "
-            "of these lights may be wrong."
+            f"Worst explained: {join_words(named)}; {_format_share(usual)} is usual. The "
+            "directions of these lights may be wrong."
         )
 
 
