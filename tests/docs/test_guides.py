@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_objects import Made
 
 import brdfkit as bk
+from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.materials.measured.tabulation import tabulate
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -23,12 +25,13 @@ SMALLER = {  # what shows as well that a line runs, and at once
     r'"width": 48, "height": 48': '"width": 16, "height": 16',
     r'"(?:car_paint|satin_plastic)"': '"small.npz"',
     r'"brushed_aluminium"': '"brushed.npz"',
+    r'"captures/cat"': '"ball"',
 }
 
 
 @pytest.fixture
 def here(tmp_path, monkeypatch, llvm_variant, no_user_plugins):
-    """A folder with two small materials that stand for those that come with brdfkit."""
+    """A folder with two small materials and photographs that stand for those of the pages."""
     monkeypatch.chdir(tmp_path)
     ggx, rng = bk.models()["ggx"], np.random.default_rng(0)
     for name, model, shape in (
@@ -38,6 +41,7 @@ def here(tmp_path, monkeypatch, llvm_variant, no_user_plugins):
         truth = tabulate(model.eval, 1, shape).values * np.ones(3)
         values = truth * (1 + 0.02 * rng.normal(size=truth.shape))
         bk.save(bk.Measured.from_table(values, standard_error=0.02 * truth), f"{name}.npz")
+    Made().diligent(tmp_path / "ball")
 
 
 @pytest.mark.parametrize(
@@ -48,4 +52,5 @@ def test_its_python_runs(page, here):
     for large, small in SMALLER.items():
         program = re.sub(large, small, program)
     # not the main module: what is below `if __name__ == "__main__"` starts processes
-    exec(compile(program, page.name, "exec"), {"__name__": page.stem})
+    with use_two_threads():  # pages load scenes by Mitsuba itself, which waits in one thread
+        exec(compile(program, page.name, "exec"), {"__name__": page.stem})
