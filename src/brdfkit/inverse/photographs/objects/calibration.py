@@ -16,6 +16,7 @@ from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.inverse.photographs.objects.equations import Prior, Reflection, compute_equations
 from brdfkit.inverse.photographs.objects.fit_pixels import Pixels, fit_pixels, split_weights
+from brdfkit.inverse.photographs.objects.noise import measure_noise
 from brdfkit.inverse.photographs.objects.photometric_stereo import estimate_normals
 from brdfkit.inverse.photographs.objects.prediction import compute_relative_differences, predict
 from brdfkit.inverse.photographs.objects.small_systems import compute_variances
@@ -23,7 +24,7 @@ from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile, to_vector
 
 PIXELS = 12_000  # largest number of pixels that determine exposures, noise and usual weights
 PAIRS = 300_000  # largest number of pairs of such a pixel and a photograph
-SHARE_FOR_SHAPES = 0.2  # share of those pixels that determine the shape parameters
+SHARE_FOR_SHAPES = 0.2  # share of these numbers that determine the shape parameters
 DARK_OFFSET = 0.05  # δ as a share of the typical ratio of values to irradiance
 # Scales of relative residuals, in their order: large ones first, because the robust loss has one
 # minimum for large scales, and its start is near the right one of several for small scales
@@ -31,6 +32,7 @@ SCALES = 0.2, 0.1, 0.05
 STEPS = 4  # steps at each scale
 SCALE_OF_NOISE = 2.0  # the last scale is this many standard deviations of the residuals
 SMALLEST_SCALE = 0.005
+SMALLEST_NOISE = 1e-4
 # How often the exposures are estimated. Those that change with the direction of the light trade off
 # with tilted normals, so that more rounds let both drift away
 EXPOSURE_ROUNDS = 3
@@ -125,7 +127,8 @@ def calibrate(
         np.zeros((channels, lobes)),
         np.full((channels, lobes), np.inf),
     )
-    few = chosen[:: round(1 / SHARE_FOR_SHAPES)]
+    enough = max(1, round(SHARE_FOR_SHAPES * min(PIXELS, PAIRS // len(capture.lights))))
+    few = chosen[:: max(1, round(len(chosen) / enough))]
     for number in range(EXPOSURE_ROUNDS):
         if number < 2:
             known = replace(known, shapes=_find_shapes(capture, few, known, report))
@@ -138,6 +141,7 @@ def calibrate(
     pixels = fit_pixels(
         tile, known.reflection, pixels.normals, pixels.weights, known.scale, 2 * STEPS
     )
+    known = _measure_noise_again(capture, chosen, tile, pixels, known)
     known = _measure_usual_weights(tile, pixels, known)
     report()
     return known
@@ -263,7 +267,23 @@ def _measure_photographs(
     deviation = 1.4826 * float(np.median(np.abs(joined))) if len(joined) else known.noise
     noise = deviation * np.sqrt(count / max(free, 1e-9))
     change = np.exp(np.array(logarithms) - np.mean(logarithms))
-    return replace(known, exposures=known.exposures * change, noise=max(noise, 1e-4))
+    return replace(known, exposures=known.exposures * change, noise=max(noise, SMALLEST_NOISE))
+
+
+def _measure_noise_again(
+    capture: ObjectCapture, chosen: AnyArray, tile: Tile, pixels: Pixels, known: Calibration
+) -> Calibration:
+    """Return the calibration with the noise that pixels show which were fitted without a prior."""
+    values = capture.values[:, chosen].astype(float)
+    if capture.lost is not None:
+        values[capture.lost[:, chosen]] = np.nan
+    _, irradiance = capture.with_exposures(known.exposures).lights.illuminate(
+        capture.points[chosen]
+    )
+    noise = measure_noise(
+        tile, known.reflection, pixels, values, irradiance, known.scale, known.brightness
+    )
+    return known if noise is None else replace(known, noise=max(noise, SMALLEST_NOISE))
 
 
 def _measure_usual_weights(tile: Tile, pixels: Pixels, known: Calibration) -> Calibration:
