@@ -82,7 +82,7 @@ def _collect_rows(
     scale: float,
     brightness: float,
 ) -> Rows:
-    """Return the rows of the Jacobian by differences; the arguments are those of `measure_noise`."""
+    """Return the rows of the Jacobian by differences; for arguments see `measure_noise`."""
     n, weights = pixels.normals, pixels.weights
     lobe_count = weights.shape[2]
     single = [np.broadcast_to(np.eye(lobe_count)[k], weights.shape) for k in range(lobe_count)]
