@@ -543,6 +543,14 @@ def test_few_photographs_without_lights_are_refused(tmp_path):
         load_photographs(write_without_lights(tmp_path, 5))
 
 
+def test_a_folder_of_folders_names_one_with_photographs(tmp_path):
+    with pytest.raises(BrdfkitError, match=r"no photographs in it; give .* has them\.$"):
+        load_photographs(tmp_path)
+    Made().table(tmp_path / "ball")
+    with pytest.raises(BrdfkitError, match=r"such as .*ball"):
+        load_photographs(tmp_path)
+
+
 def test_lights_of_an_object_without_an_outline_are_not_estimated(tmp_path):
     write_without_lights(tmp_path, 6, mask=False)
     write_mask(tmp_path / "mask.png", np.ones((48, 48), bool))

@@ -46,8 +46,7 @@ from brdfkit.core.interrupts import Interrupted
     type=float,  # `brdfkit.photographs.svbrdf` checks its range
     metavar="X",
     help="Allowed difference between neighbouring texels of a flat sample; smaller values give "
-    "smoother maps. "
-    "Default: chosen by photographs that are held out.",
+    "smoother maps. Default: chosen by photographs that are held out.",
 )
 @click.option(
     "--linearise",
@@ -88,6 +87,7 @@ def svbrdf(
     docs/how_to/photographs.md and docs/how_to/photographs_of_objects.md.
     """
     from brdfkit.cli.arguments import use_results_folder
+    from brdfkit.inverse.photographs import ObjectMaps
     from brdfkit.inverse.photographs import svbrdf as fit_maps
     from brdfkit.inverse.photographs.result.files import make_output_folder
     from brdfkit.model import labels
@@ -119,4 +119,5 @@ def svbrdf(
     else:
         console.print_written(written)
     if interrupted:
-        exit_interrupted("these are the maps so far, without standard errors")
+        goes_on = "; the same command goes on from there" if isinstance(maps, ObjectMaps) else ""
+        exit_interrupted(f"these are the maps so far, without standard errors{goes_on}")

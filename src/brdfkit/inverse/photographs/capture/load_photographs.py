@@ -89,6 +89,12 @@ def load_photographs(
     photographs = list_photographs(folder)
     if len(photographs) >= FEWEST:
         return _load_without_lights(folder, photographs, coding)
+    if not photographs:
+        parts = [part for part in sorted(folder.iterdir()) if part.is_dir()]
+        found = next((f", such as {part}" for part in parts if list_photographs(part)), "")
+        raise BrdfkitError(
+            f"{folder}: there are no photographs in it; give the folder that has them{found}."
+        )
     raise BrdfkitError(
         f"{folder}: there is no {CAPTURE_FILE} in it, nor another file that says where the lights "
         f"of its {len(photographs)} photographs are; add lights.txt, with x y z of each (right, "
