@@ -50,8 +50,9 @@ class Svbrdf(Shown):
     capture : Capture
         The photographs, reduced where the maps do not need all of their pixels.
     uncertainty : dict of str to ndarray
-        The standard error (height, width) of each map, that of the normal in radians. It covers the
-        noise of the photographs and what the model does not explain. Empty where Ctrl-C ended the
+        The standard error (height, width) of each map. For the normal it is that of the angle to
+        the true one [radians], of which 95 % are within 1.96. It covers the noise of the
+        photographs, lost details and what the model does not explain. Empty where Ctrl-C ended the
         search.
     misfit : ndarray, shape (height, width), or None
         The residual of each texel in units of the noise: about 1 where the maps explain the
