@@ -23,6 +23,8 @@ DARK_OFFSET = 0.05
 class Observations:
     """Radiances of n texels in k photographs, each under one light, with the geometry behind them.
 
+    The arrays are in single precision if they are collected from photographs, to save memory.
+
     radiance : radiances in the photographs, (k, n, 3) [W/(m² sr)].
     weights : weights of squared errors, (k, n, 3): about 1 / radiance², 0 where lost or clipped.
     to_light : unit vectors from the texels to the lights, (k, n, 3).
@@ -58,7 +60,9 @@ class Observations:
         brightness = radiance[shown].mean() if shown.any() else 1.0
         scale = np.maximum(radiance, 0) + DARK_OFFSET * brightness
         weights = np.where(lost, 0, 1 / scale**2)
-        return cls(radiance, weights, to_light, irradiance, to_camera, shape)
+        arrays = (radiance, weights, to_light, irradiance, to_camera)
+        single = {n: a.astype(np.float32) for n, a in zip(ARRAYS, arrays, strict=True)}
+        return cls(**single, shape=shape)
 
     def select_lights(self, lights: IntArray) -> Observations:
         """Return the observations in the photographs with the given indices."""

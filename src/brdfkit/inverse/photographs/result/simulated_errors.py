@@ -98,7 +98,7 @@ def _simulate_photographs(
     pictures = np.where(capture.counted, rendered.pictures + noise, rendered.pictures)
     simulated = replace(capture, pictures=pictures, lost=capture.excluded)
     radiance = sample_at_texels(simulated, pictures, problem.observed.shape)
-    return problem.with_observations(replace(problem.observed, radiance=radiance)), simulated
+    return problem.with_radiances(radiance), simulated
 
 
 def _fit_again(problem: Problem, start: FittedMaps, rounds: int, capture: Capture) -> FittedMaps:

@@ -42,7 +42,8 @@ def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tu
     yield x, noise, level.observed.shape
     while side > 1:
         side //= 2
-        coarse, level = level.observed.shape, problem.with_observations(finest.pool_texels(side))
+        coarse = level.observed.shape
+        level = problem.with_observations(finest.pool_texels(side)) if side > 1 else problem
         x = enlarge_map(x, coarse, level.observed.shape, 2)
         x, noise = _fit_and_estimate_noise(level, x, noise)
         strength = level.compute_smoothness_weights(

@@ -13,7 +13,7 @@ their own for each texel, so that a kernel runs over the texels and loops over t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
@@ -46,21 +46,25 @@ class KernelObservations:
     @classmethod
     def collect(cls, observed: Observations) -> KernelObservations:
         """Return the observations for kernels."""
-        single: Any = dr.float32_array_t(choose_float_type())
         lights, texels = observed.radiance.shape[:2]
-        planes = {
-            name: [
-                single(pad(np.ravel(values[..., axis].astype(np.float32))))
-                for axis in range(CHANNELS)
-            ]
-            for name, values in ((name, getattr(observed, name)) for name in ARRAYS)
-        }
+        planes = {name: _split_into_planes(getattr(observed, name)) for name in ARRAYS}
         return cls(planes, lights, texels)
+
+    def with_radiances(self, radiance: FloatArray) -> KernelObservations:
+        """Return the same observations with other radiances (k, n, 3) in the photographs."""
+        return replace(self, planes=self.planes | {"radiance": _split_into_planes(radiance)})
 
     def read(self, name: str, place: Any) -> list[JitFloat]:
         """Return three numbers of each texel, in double precision."""
         real = choose_float_type()
         return [real(dr.gather(type(plane), plane, place)) for plane in self.planes[name]]
+
+
+def _split_into_planes(values: FloatArray) -> list[Any]:
+    """Return each of the three components of `values` (k, n, 3) as an array of Dr.Jit."""
+    single: Any = dr.float32_array_t(choose_float_type())
+    planes = (np.ravel(values[..., axis]).astype(np.float32) for axis in range(CHANNELS))
+    return [single(pad(plane)) for plane in planes]
 
 
 @in_turn

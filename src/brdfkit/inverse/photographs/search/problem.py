@@ -73,6 +73,13 @@ class Problem:
         """Return the same problem for other observations."""
         return replace(self, observed=observed)
 
+    def with_radiances(self, radiance: FloatArray) -> Problem:
+        """Return the same problem for other `radiance` (k, n, 3) in the photographs."""
+        other = self.with_observations(replace(self.observed, radiance=radiance))
+        # The directions of lights and cameras are not converted for kernels again
+        other.__dict__["_photographs"] = self._photographs.with_radiances(radiance)
+        return other
+
     def compute_errors(self, x: FloatArray) -> FloatArray:
         """Return for each texel of the maps the sum (n,) of its weighted squared residuals.
 

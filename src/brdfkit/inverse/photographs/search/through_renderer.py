@@ -89,7 +89,7 @@ def correct_maps(
         misfit = np.maximum(measure_misfit(beyond, fitted.noise, observed), 1)
         beyond *= (1 - 1 / misfit**2)[:, None]
     radiance = problem.parameters.compute_radiances(fitted.x, observed) + beyond
-    target = problem.with_observations(replace(observed, radiance=radiance))
+    target = problem.with_radiances(radiance)
     # The Hessian does not depend on the radiances, so that of the earlier fit is used
     strength = target.compute_smoothness_weights(fitted.equations.hessian, fitted.noise, fitted.tau)
     x = fit_all_texels(target, fitted.x.copy(), strength, STEPS_PER_ROUND)
