@@ -89,7 +89,8 @@ def _describe_highlights(state: FittedObject) -> Iterator[str]:
         elif unknown.mean() > MENTIONED_UNKNOWN:
             yield (
                 f"In {_format_share(float(unknown.mean()))} of the pixels no photograph shows the "
-                f"highlight: {name} has its usual value there. More lights would show it."
+                f"highlight: {name} has its usual value there. Lights from other directions would "
+                "show it."
             )
 
 
