@@ -491,6 +491,25 @@ def test_the_command_fits_holds_out_and_says_so(tmp_path):
     assert (tmp_path / "maps" / "report.html").is_file()
 
 
+@pytest.mark.parametrize("has_maps", [False, True])
+def test_an_interrupted_command_says_that_it_goes_on(has_maps, found, tmp_path, monkeypatch):
+    def stop(folder, *_, checkpoint, **__):
+        (checkpoint / "unfinished.npz").touch()
+        if has_maps:
+            raise Interrupted(found, "stopped")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("brdfkit.inverse.photographs.svbrdf", stop)
+    run = CliRunner().invoke(main, ["svbrdf", "ball", "-o", str(tmp_path)])
+    assert run.exit_code == 130
+    start = (
+        "these are the maps so far, without standard errors" if has_maps else "there are no maps"
+    )
+    assert f"interrupted; {start}" in run.stderr
+    assert run.stderr.endswith("the same command goes on from there.\n")
+    assert (tmp_path / "report.html").is_file() == has_maps
+
+
 @pytest.mark.parametrize(
     ("how", "sentence"),
     [

@@ -87,8 +87,8 @@ def svbrdf(
     docs/how_to/photographs.md and docs/how_to/photographs_of_objects.md.
     """
     from brdfkit.cli.arguments import use_results_folder
-    from brdfkit.inverse.photographs import ObjectMaps
     from brdfkit.inverse.photographs import svbrdf as fit_maps
+    from brdfkit.inverse.photographs.objects.unfinished import NAME as UNFINISHED
     from brdfkit.inverse.photographs.result.files import make_output_folder
     from brdfkit.model import labels
 
@@ -111,7 +111,14 @@ def svbrdf(
             )
         except Interrupted as stop:
             maps, interrupted = stop.best, True
-        written = maps.write(output)
+        except KeyboardInterrupt:
+            if not (output / UNFINISHED).is_file():
+                raise
+            maps = None
+        written = [] if maps is None else maps.write(output)
+    goes_on = "; the same command goes on from there" if (output / UNFINISHED).is_file() else ""
+    if maps is None:
+        exit_interrupted(f"there are no maps yet{goes_on}")
     if not console.as_json:
         console.output.print(str(maps), markup=False, highlight=False)
     if console.as_json:
@@ -119,5 +126,4 @@ def svbrdf(
     else:
         console.print_written(written)
     if interrupted:
-        goes_on = "; the same command goes on from there" if isinstance(maps, ObjectMaps) else ""
         exit_interrupted(f"these are the maps so far, without standard errors{goes_on}")

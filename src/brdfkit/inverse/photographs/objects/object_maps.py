@@ -43,7 +43,7 @@ class ObjectMaps(Shown):
         of the photographs. Empty where Ctrl-C ended the search.
     lights : ndarray, shape (height, width)
         How many photographs tell something of a pixel: in the others it is in the shadow or
-        clipped.
+        clipped. Photographs with large residuals count in part.
     exposures : dict of str to float
         The factor of the stated light in each photograph, which the fit found.
     noise : float
