@@ -476,6 +476,9 @@ def test_reflectances_above_one_and_photographs_that_do_not_fit_are_noted(found)
     text = " ".join(describe_object_fit(found.capture, state, by_name))
     assert "reflectance is above 1" in text
     assert "Worst explained: 03.png (30 %); 2 % is usual" in text
+    dark = replace(found.state, weights=found.state.weights / 400)
+    text = " ".join(describe_object_fit(found.capture, dark, {}))
+    assert "unless the object is black" in text
 
 
 def test_the_command_fits_holds_out_and_says_so(tmp_path):

@@ -24,6 +24,7 @@ MENTIONED_BRIGHT = 0.05  # share of pixels with a reflectance above 1
 # A photograph is named whose residuals are this many times the median of all photographs
 WORSE = 2.0
 SMALLEST_WORSE = 0.02  # median relative error below which no photograph is named
+DARKEST = 0.005  # median of the diffuse reflectance below which it is mentioned
 BRIGHTEST = 0.95  # quantile of the diffuse reflectance that should be 1 at most
 
 
@@ -62,15 +63,8 @@ def _find_doubts(
             "others being in the shadow or clipped: there neighbours and usual values decide."
         )
     yield from _describe_highlights(state)
-    diffuse = state.weights[:, :, 0].max(axis=1)
-    bright = float((diffuse > 1).mean())
-    if bright > MENTIONED_BRIGHT:
-        yield (
-            f"The diffuse reflectance is above 1 in {_format_share(bright)} of the pixels: the "
-            "intensities of the lights, which are 1 where nothing states them, are not in the "
-            "units of the photographs. All reflectances are too large by one factor, probably "
-            f"{np.quantile(diffuse, BRIGHTEST):.2g} or more."
-        )
+    if known.noise <= MENTIONED_NOISE:
+        yield from _describe_brightness(state.weights[:, :, 0].max(axis=1))
     yield from _describe_worst(by_name)
 
 
@@ -92,6 +86,25 @@ def _describe_highlights(state: FittedObject) -> Iterator[str]:
                 f"highlight: {name} has its usual value there. Lights from other directions would "
                 "show it."
             )
+
+
+def _describe_brightness(diffuse: FloatArray) -> Iterator[str]:
+    """Yield a sentence on diffuse reflectances (n,) that no material has."""
+    bright, median = float((diffuse > 1).mean()), float(np.median(diffuse))
+    units = "not in the units of the photographs"
+    if bright > MENTIONED_BRIGHT:
+        yield (
+            f"The diffuse reflectance is above 1 in {_format_share(bright)} of the pixels: the "
+            f"intensities of the lights, which are 1 where nothing states them, are {units}. All "
+            "reflectances are too large by one factor, probably "
+            f"{np.quantile(diffuse, BRIGHTEST):.2g} or more."
+        )
+    elif median < DARKEST:
+        yield (
+            f"The diffuse reflectance is {median:.2g} in the median: unless the object is black or "
+            "a metal, the intensities of the lights, which are 1 where nothing states them, are "
+            f"{units}."
+        )
 
 
 def _describe_worst(by_name: dict[str, tuple[float, float]]) -> Iterator[str]:
