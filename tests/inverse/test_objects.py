@@ -346,13 +346,16 @@ def test_a_stop_while_maps_are_compared_keeps_the_state(made, found, monkeypatch
     assert "its state could not be kept" in error.value.best.notes[1]
 
 
-def test_a_stop_before_there_are_maps_has_none(made):
+def test_a_stop_before_there_are_maps_has_none(made, monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as error:
         fit_ball(made[0], progress=stop)
     assert not isinstance(error.value, Interrupted)
+    monkeypatch.setattr(Tile, "illuminate", stop)  # within a loop that Dr.Jit records
+    with pytest.raises(KeyboardInterrupt):
+        fit_ball(made[0])
 
 
 def test_the_state_of_other_photographs_is_not_used(made, tmp_path):

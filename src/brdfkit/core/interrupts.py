@@ -77,6 +77,15 @@ def _raise_interrupt(number: int, _frame: FrameType | None) -> None:
     raise KeyboardInterrupt
 
 
+def is_interrupt(error: BaseException | None) -> bool:
+    """Return whether Ctrl-C is the cause of an error, which native code may turn into another."""
+    while error is not None:
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
 @contextmanager
 def delay_signals() -> Iterator[None]:
     """Delay Ctrl-C and SIGTERM to the end of the block, where they have their usual effect.

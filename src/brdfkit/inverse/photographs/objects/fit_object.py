@@ -14,7 +14,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.interrupts import Interrupted
+from brdfkit.core.interrupts import Interrupted, is_interrupt
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.inverse.photographs.objects.calibration import (
@@ -105,7 +105,9 @@ def fit_object(
             work(Tile.collect(capture, rows, state.calibration.exposures), rows, state)
             state.finished = number + 1
             report()
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, RuntimeError) as error:  # within loops, Dr.Jit raises the latter
+        if not is_interrupt(error):
+            raise
         raise Interrupted(state) from None
     return state
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import Interrupted
+from brdfkit.core.interrupts import Interrupted, is_interrupt
 from brdfkit.core.progress_bar import Progress, make_step_counter
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
@@ -59,7 +59,9 @@ def fit_maps_of_object(
     try:
         state = fit_object(capture, parameters, state, report)
         maps = _collect(capture, hidden, label, state, began)
-    except KeyboardInterrupt as stop:
+    except (KeyboardInterrupt, RuntimeError) as stop:
+        if not is_interrupt(stop):
+            raise
         state = stop.best if isinstance(stop, Interrupted) else state
         notes = _keep_state(checkpoint, state, capture, parameters)
         if state is None or state.calibration is None or not state.finished:
