@@ -25,7 +25,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import uniform_filter
 
-from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.observations import sample_at_texels
 from brdfkit.inverse.photographs.maps.undetermined import is_undetermined
@@ -72,21 +72,23 @@ def simulate_standard_errors(
     lost_again = (again.x - _fit_again(target, rougher, rounds, simulated).x) / share
 
     errors = compute_standard_errors(problem, fitted)
-    shown = (problem.observed.weights > 0).any(axis=(0, 2)).astype(float)
+    shown: BoolArray = np.any(problem.observed.weights > 0, axis=(0, 2))
+    is_open = is_undetermined(fitted.equations.hessian)
 
-    def average(differences: FloatArray, side: int) -> FloatArray:
+    def average(differences: FloatArray, side: int, counted: BoolArray) -> FloatArray:
         """Return the mean squared ratio of differences to errors, over the texels around each."""
         ratio = np.minimum(np.abs(differences) / np.maximum(errors, 1e-300), LARGEST_ERROR_RATIO)
-        return _average_over_neighbours(ratio**2, shown, problem.observed.shape, side)
+        return _average_over_neighbours(ratio**2, counted, problem.observed.shape, side)
 
-    square = average((again.x - fitted.x) / share, ERROR_SIDE)
-    details = average(lost, DETAIL_SIDE) - average(lost_again, DETAIL_SIDE)
+    off, determined = (again.x - fitted.x) / share, shown & ~is_open
+    square = average(off, ERROR_SIDE, determined)
+    details = average(lost, DETAIL_SIDE, determined) - average(lost_again, DETAIL_SIDE, determined)
     total = square + details / (1 - 1 / ROUGHER**2) ** 2
     # Chance may make the lost details negative
     square = np.maximum(total, SMALLEST_REMAINDER * square)
     # What the photographs do not determine stays as uncertain as its range
-    open_texels = is_undetermined(fitted.equations.hessian)
-    return errors * np.sqrt(np.where(open_texels[:, None], np.maximum(square, 1), square))
+    at_least_range = np.maximum(average(off, ERROR_SIDE, shown), 1)
+    return errors * np.sqrt(np.where(is_open[:, None], at_least_range, square))
 
 
 def _simulate_photographs(
@@ -126,13 +128,14 @@ def _measure_share_of_noise(
 
 
 def _average_over_neighbours(
-    values: AnyArray, shown: FloatArray, shape: tuple[int, int], side: int
+    values: AnyArray, counted: BoolArray, shape: tuple[int, int], side: int
 ) -> FloatArray:
-    """Return for each texel the mean over the texels that are shown in a square around it.
+    """Return for each texel the mean over the texels that count in a square around it.
 
-    `values` (texels, numbers) belong to the texels of a map of `shape` (height, width), and `shown`
-    (texels,) is 1 or 0. The square has `side` texels along a side.
+    `values` (texels, numbers) belong to the texels of a map of `shape` (height, width), and
+    `counted` (texels,) says which count. The square has `side` texels along a side.
     """
+    share = counted.astype(float)
 
     def average(numbers: AnyArray) -> FloatArray:
         """Return the mean over the squares, where texels beyond the maps count as 0."""
@@ -140,4 +143,4 @@ def _average_over_neighbours(
         mean: FloatArray = uniform_filter(grid, size=(side, side, 0), mode="constant")
         return mean.reshape(len(numbers), -1)
 
-    return average(values * shown[:, None]) / np.maximum(average(shown), 0.5 / side**2)
+    return average(values * share[:, None]) / np.maximum(average(share), 0.5 / side**2)

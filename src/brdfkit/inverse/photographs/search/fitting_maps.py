@@ -138,7 +138,7 @@ def compute_standard_errors(problem: Problem, fitted: FittedMaps) -> FloatArray:
 
     Each error assumes that the numbers of the neighbouring texels are known. If the photographs do
     not determine a texel, they hardly determine its neighbours either: then only the range or the
-    unit of a number limits its error. Errors are larger where residuals exceed the noise.
+    unit of a number limits its error. Other errors are larger where residuals exceed the noise.
     """
     noise, own = fitted.noise, fitted.equations.hessian
     ranges, (low, high) = problem.find_number_units(own), problem.parameters.find_limits()
@@ -146,8 +146,9 @@ def compute_standard_errors(problem: Problem, fitted: FittedMaps) -> FloatArray:
     ranges[is_limited] = (high - low)[is_limited] / 2
     prior = np.diag(noise / ranges**2)
     together = own + 4 * np.diag(fitted.strength * is_observed(own)) + prior
-    matrix = np.where(is_undetermined(own)[:, None, None], own + prior, together)
+    is_open = is_undetermined(own)
+    matrix = np.where(is_open[:, None, None], own + prior, together)
     variance = np.diagonal(np.linalg.inv(matrix), axis1=1, axis2=2)
     misfit = compute_misfit(fitted.equations.error, noise, problem.observed)
     variance = np.maximum(variance, 0) * noise
-    return np.sqrt(variance) * np.where(misfit > UNEXPLAINED, misfit, 1)[:, None]
+    return np.sqrt(variance) * np.where((misfit > UNEXPLAINED) & ~is_open, misfit, 1)[:, None]
