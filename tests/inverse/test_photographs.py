@@ -216,7 +216,7 @@ def test_one_light_says_what_trades_off(made):
     )
     found = bk.photographs.svbrdf(alone, resolution=8)
     assert "One light: roughness and strength trade off" in found.notes[0]
-    assert np.median(found.uncertainty["normal"]) < 1  # about the range, 10 times that once
+    assert np.median(found.uncertainty["normal"]) < 1  # about its range
 
 
 def test_clipped_numbers_are_found_in_each_colour(made):
