@@ -17,10 +17,10 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted, is_interrupt
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.objects.calibrate import calibrate
 from brdfkit.inverse.photographs.objects.calibration import (
     STEPS,
     Calibration,
-    calibrate,
     fit_from_start,
 )
 from brdfkit.inverse.photographs.objects.equations import compute_equations
