@@ -419,7 +419,7 @@ def test_the_scene_looks_like_the_prediction(mi, found, tmp_path):
 def test_the_edge_of_the_dark_side_is_dark(mi, found, tmp_path):
     found.write(tmp_path)
     light = np.array([0.9, 0.1, 0.3])
-    scene = mi.load_file(str(tmp_path / "object.xml"))
+    scene = load_scene_file(tmp_path / "object.xml")
     params = mi.traverse(scene)
     params["lamp.to_world"] = mi.ScalarTransform4f().look_at(
         [0, 0, 0], (-light).tolist(), [0, 0, 1]
