@@ -23,8 +23,8 @@ from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import BAD, GOOD
 from brdfkit.core.errors import BrdfkitError, find_nearest_name, no_such_error
+from brdfkit.core.interrupts import is_interrupt
 from brdfkit.core.jit import llvm
-from brdfkit.core.jit.loops import is_interrupt
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.materials.resolve import MaterialLike, to_material

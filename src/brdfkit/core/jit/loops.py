@@ -28,13 +28,6 @@ def raise_first_cause() -> Iterator[None]:
         raise first from None
 
 
-def is_interrupt(error: BaseException | None) -> bool:
-    """Return whether an error is Ctrl-C, or was caused by it."""
-    while error is not None and not isinstance(error, KeyboardInterrupt):
-        error = error.__cause__
-    return error is not None
-
-
 def record_loops(function: Callable[P, R]) -> Callable[P, R]:
     """Decorate a function so that Dr.Jit records its loops, each in one kernel.
 
