@@ -145,7 +145,7 @@ def test_what_is_clamped_is_said():
     assert any("pairs are clamped at 0" in note for note in notes)
 
 
-def test_a_derived_class_may_have_a_highlight_below_zero():
+def test_a_derived_class_may_have_a_highlight_below_zero(no_user_plugins):
     """Weights of any sign are declared in a class of the model: docs/how_to/your_model.md."""
 
     class SignedWard(labels.model("ward")):

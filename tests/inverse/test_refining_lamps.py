@@ -56,7 +56,10 @@ def test_each_picture_has_its_lamps_alone(mi, pictures):
         dr.kernel_history_clear()
         one, other = (found.render_pixels(found.start, 256, seed) for seed in (0, 50))
         kernels = dr.kernel_history([dr.KernelType.JIT])
-    assert all(kernel["cache_hit"] for kernel in kernels)
+    # the first change of each kind of lamp compiles a kernel of a few operations
+    renderings = [kernel for kernel in kernels if kernel["operation_count"] > 1000]
+    assert len(renderings) == 2 * len(LAMPS)
+    assert all(kernel["cache_hit"] for kernel in renderings)
     alone = {**dark, "bulb": {**dark["bulb"], "emitter": BLACK}}
     del alone["sky"]
     for name, a, b in zip(LAMPS, *map(found.split_pictures, (one, other)), strict=True):

@@ -25,7 +25,7 @@ OTHERS = {name: kind for kind in KINDS if kind != MODELS for name in find_plugin
 
 
 @pytest.mark.quick
-def test_every_plugin_has_a_page():
+def test_every_plugin_has_a_page(no_user_plugins):
     for kind in KINDS:
         for name, source in find_plugins(kind).items():
             found = read_page(source)
