@@ -61,7 +61,7 @@ def define(mi: MitsubaModule) -> type:
     """Return the plugin's class for Mitsuba's current variant: a `mi.BSDF`."""
     import drjit as dr
 
-    from brdfkit.core.geometry.vectors import HORIZON
+    from brdfkit.core.geometry.vectors import HORIZON, normalise
     from brdfkit.mitsuba_bridge.bsdf import tilted_facets
 
     Base: MitsubaObject = derive_plugin(mi.BSDF, PARAMETERS)
@@ -87,7 +87,7 @@ def define(mi: MitsubaModule) -> type:
             n = tilted_facets.decode_normal(mi.Vector3f(self.normalmap.eval_3(si, active)))
             if self.flip_invalid_normals:
                 n = tilted_facets.bend_normal(n, si.wi)
-            s = tilted_facets.normalise(mi.Vector3f(1, 0, 0) - n * n.x)
+            s = normalise(mi.Vector3f(1, 0, 0) - n * n.x)
             frame = mi.Frame3f(s, dr.cross(n, s), n)
             inside = mi.SurfaceInteraction3f(si)
             inside.wi = frame.to_local(si.wi)

@@ -16,7 +16,7 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted
-from brdfkit.core.jit.double_precision import to_scalar
+from brdfkit.core.jit.double_precision import to_array, to_scalar, to_vector
 from brdfkit.inverse.photographs import Lights
 from brdfkit.inverse.photographs.arguments import to_texel_parameters
 from brdfkit.inverse.photographs.objects import fit_object, svbrdf_of_object, tile
@@ -28,7 +28,7 @@ from brdfkit.inverse.photographs.objects.photometric_stereo import estimate_norm
 from brdfkit.inverse.photographs.objects.prediction import predict
 from brdfkit.inverse.photographs.objects.scene import format_object_xml
 from brdfkit.inverse.photographs.objects.small_systems import compute_step, compute_variances
-from brdfkit.inverse.photographs.objects.tile import Tile, to_array, to_vector
+from brdfkit.inverse.photographs.objects.tile import Tile
 from brdfkit.mitsuba_bridge.scene_file import load_scene_file
 from brdfkit.model import labels
 

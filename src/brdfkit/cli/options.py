@@ -108,6 +108,16 @@ def writing_options(command: Command) -> Command:
     return call_without_force
 
 
+seed_option = click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Seed of random numbers.",
+)
+
+
 def render_options(
     command: Command, spp: int = SPP, size: str = "512, or the size in a scene file"
 ) -> Command:
@@ -116,15 +126,12 @@ def render_options(
     `spp` and `size` are the defaults that the help states.
     """
     count: dict[str, Any] = {"type": click.IntRange(min=1), "metavar": "N"}
-    seed: dict[str, Any] = {"type": click.IntRange(min=0), "metavar": "N"}
     floor = (
         "Add samples until the noise floor, the PSNR between two renderings with different seeds, "
         "reaches this value; noise at 45dB is hardly visible."
     )
     for option in (
-        click.option(
-            "--seed", default=0, show_default=True, help="Seed of random numbers.", **seed
-        ),
+        seed_option,
         click.option("--size", help=f"Side of a picture [pixels]. Default: {size}.", **count),
         click.option("--noise-floor", type=Decibels(), metavar="DECIBELS", help=floor),
         click.option(

@@ -10,7 +10,7 @@ import click
 
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import exit_interrupted
-from brdfkit.cli.options import output_option, writing_options
+from brdfkit.cli.options import output_option, seed_option, writing_options
 from brdfkit.cli.settings import parse_settings
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted
@@ -78,14 +78,7 @@ if TYPE_CHECKING:
 @click.option(
     "--accept-8-bit", is_flag=True, help="Accept pictures with 8 bits, and invert their sRGB curve."
 )
-@click.option(
-    "--seed",
-    type=click.IntRange(min=0),
-    default=0,
-    show_default=True,
-    metavar="N",
-    help="Seed of random numbers.",
-)
+@seed_option
 @output_option("Folder for the values, the fits and pictures to compare. Default: none is written.")
 @writing_options
 def refine(

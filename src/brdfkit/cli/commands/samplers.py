@@ -6,7 +6,7 @@ import click
 
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import exit_interrupted
-from brdfkit.cli.options import MESHES, output_options
+from brdfkit.cli.options import MESHES, output_options, seed_option
 
 
 @click.command()
@@ -33,14 +33,7 @@ from brdfkit.cli.options import MESHES, output_options
     metavar="N",
     help="Number of repeats; more of them detect smaller differences.",
 )
-@click.option(
-    "--seed",
-    type=click.IntRange(min=0),
-    default=0,
-    show_default=True,
-    metavar="N",
-    help="Seed of random numbers.",
-)
+@seed_option
 @output_options
 def samplers(
     environment: str, material: str, scene: str, rounds: int, seed: int, console: Console

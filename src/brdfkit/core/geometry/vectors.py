@@ -22,10 +22,14 @@ def dot(a: JitVector, b: JitVector) -> JitFloat:
     return a.x * b.x + a.y * b.y + a.z * b.z
 
 
+def normalise(w: JitVector) -> JitVector:
+    """Return a vector divided by its length."""
+    return w * dr.rsqrt(dot(w, w))
+
+
 def half_vector(wi: JitVector, wo: JitVector) -> JitVector:
     """Return the unit vector halfway between two directions above the surface."""
-    s = wi + wo
-    return s * dr.rsqrt(dot(s, s))
+    return normalise(wi + wo)
 
 
 def cos_theta_d(wi: JitVector, wo: JitVector) -> JitFloat:

@@ -17,7 +17,7 @@ the albedo ρ, which sends ρ δ below the surface, gets a matt term of the albe
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask, JitVector
-from brdfkit.core.geometry.vectors import dot
+from brdfkit.core.geometry.vectors import dot, normalise
 
 # The cosine between a normal and the viewer is at least this share of that of the surface's normal
 LEAST_FACING = 0.5
@@ -29,11 +29,6 @@ def decode_normal(colour: JitVector) -> JitVector:
     """Return the unit normal of a normal map's colour: each channel is (component + 1) / 2."""
     x, y, z = (2 * channel - 1 for channel in (colour.x, colour.y, colour.z))
     return normalise(type(colour)(x, y, dr.maximum(z, STEEPEST)))
-
-
-def normalise(w: JitVector) -> JitVector:
-    """Return a vector divided by its length."""
-    return w * dr.rsqrt(dot(w, w))
 
 
 def bend_normal(n: JitVector, wi: JitVector) -> JitVector:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, IntArray
+from brdfkit.core.arguments import to_array, wrong_value_error
+from brdfkit.core.array_types import ArrayLike, FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,3 +71,17 @@ class Lights:
             cosine = np.maximum(-(to_light * self.axes[:, None]).sum(axis=2), 0)
             irradiance = irradiance * (cosine ** self.exponents[:, None])[..., None]
         return to_light, irradiance
+
+
+def to_strength(what: str, value: ArrayLike) -> FloatArray:
+    """Return a user's strength of one light, a number or three, as an array (1, 3).
+
+    `what` names the argument in errors. Raises `BrdfkitError` unless the numbers are 0 or above.
+    """
+    strength = to_array(what, value)
+    if (
+        strength.shape not in ((), (1,), (3,))
+        or not (np.isfinite(strength) & (strength >= 0)).all()
+    ):
+        raise wrong_value_error(what, value, "a number, or three, 0 or above")
+    return np.broadcast_to(strength, (1, 3))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -53,7 +54,7 @@ class ObjectCapture:
     distance: float | None = None
     notes: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def points(self) -> FloatArray:
         """The places (n, 3) of the pixels [m], or in pixels without a `pixel_size`, all at z = 0.
 
@@ -65,7 +66,7 @@ class ObjectCapture:
         places: FloatArray = np.stack([x, y, np.zeros_like(x)], axis=1)
         return places * (self.pixel_size or 1.0)
 
-    @property
+    @cached_property
     def to_camera(self) -> FloatArray:
         """The unit vectors (n, 3) from the pixels to the camera."""
         if self.distance is None:

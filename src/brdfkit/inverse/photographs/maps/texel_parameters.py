@@ -8,8 +8,9 @@ evaluated in the texel's frame around n. The texel then has the radiance
     L_i = E_i max(n · l_i, 0) Σ_l a_l f_l(v, l_i).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -23,6 +24,7 @@ from brdfkit.model import Model
 
 STEEPEST_SLANT = 0.65  # largest |x| and |y| of the unit normals that a search tries
 CHANNELS = 3
+SMALLEST_COSINE = 1e-3  # light and view that graze the surface more have no radiance
 
 
 @dataclass(frozen=True)
@@ -165,12 +167,27 @@ class TexelParameters:
             tangent = tangent * cosine + _cross_product(normal, tangent) * sine
         frame = tangent, _cross_product(normal, tangent), normal
         wi, wo = _to_frame_coordinates(to_camera, frame), _to_frame_coordinates(to_light, frame)
-        lit = (wi.z > 1e-3) & (wo.z > 1e-3)
-        up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
-        wi, safe_wo = _select_vector(lit, wi, up), _select_vector(lit, wo, up)
-        values |= fixed
-        lobes = [lobe for _, lobe in self.model.bind(values).terms()]
-        return [dr.select(lit, (lobe.eval(wi, safe_wo) + 0 * x) * safe_wo.z, 0) for lobe in lobes]
+        return evaluate_cosine_lobes(self.model, {**values, **fixed}, wi, wo)
+
+
+def evaluate_cosine_lobes(
+    model: type[Model], values: Mapping[str, Any], wi: JitVector, wo: JitVector
+) -> list[JitFloat]:
+    """Return each lobe of a model times the cosine of the light at `wo`, for a viewer at `wi`.
+
+    `values` holds the model's shape parameters by name. Lobes are 0 where the light or the viewer
+    is behind the surface.
+    """
+    lit = (wi.z > SMALLEST_COSINE) & (wo.z > SMALLEST_COSINE)
+    up = double_precision.Vector(0, 0, 1)
+    wi, wo = _select_vector(lit, wi, up), _select_vector(lit, wo, up)
+    lobes = [lobe for _, lobe in model.bind(dict(values)).terms()]
+    return [dr.select(lit, (lobe.eval(wi, wo) + 0 * wo.z) * wo.z, 0) for lobe in lobes]
+
+
+def mix_lobes(weights: Sequence[JitFloat], lobes: Sequence[JitFloat]) -> JitFloat:
+    """Return the sum of lobes times their weights."""
+    return sum(weight * lobe for weight, lobe in zip(weights, lobes, strict=True))
 
 
 def _cross_product(a: JitVector, b: JitVector) -> JitVector:

@@ -12,7 +12,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
-from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
 from brdfkit.inverse.photographs.objects.calibration import (
     DARK_OFFSET,
     SCALES,
@@ -24,7 +24,7 @@ from brdfkit.inverse.photographs.objects.exposures import SMALLEST_NOISE, measur
 from brdfkit.inverse.photographs.objects.fit_pixels import Pixels, fit_pixels
 from brdfkit.inverse.photographs.objects.noise import measure_noise
 from brdfkit.inverse.photographs.objects.shape_search import find_shapes
-from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile
+from brdfkit.inverse.photographs.objects.tile import Tile
 from brdfkit.inverse.photographs.objects.usual_weights import measure_usual_weights
 
 PIXELS = 12_000  # largest number of pixels that determine exposures, noise and usual weights

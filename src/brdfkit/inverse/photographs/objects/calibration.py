@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.jit.double_precision import to_scalar
+from brdfkit.core.jit.double_precision import to_scalar, to_vector
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.inverse.photographs.objects.equations import Prior, Reflection
 from brdfkit.inverse.photographs.objects.fit_pixels import Pixels, fit_pixels
 from brdfkit.inverse.photographs.objects.photometric_stereo import estimate_normals
-from brdfkit.inverse.photographs.objects.tile import Tile, to_vector
+from brdfkit.inverse.photographs.objects.tile import Tile
 
 DARK_OFFSET = 0.05  # δ as a share of the typical ratio of values to irradiance
 # Scales of relative residuals, in their order: large ones first, because the robust loss has one

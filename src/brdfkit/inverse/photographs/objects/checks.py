@@ -10,7 +10,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.lights import Lights
 from brdfkit.inverse.photographs.capture.making_lights import SMALLEST_SPREAD
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
-from brdfkit.inverse.photographs.objects.tile import CHANNELS
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 
 LENGTH_TOLERANCE = 1e-3  # largest difference of a unit vector's length from 1
 

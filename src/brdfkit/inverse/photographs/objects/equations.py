@@ -21,14 +21,11 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
+from brdfkit.core.geometry.vectors import dot
 from brdfkit.core.jit.double_precision import choose_float_type, to_scalar
-from brdfkit.inverse.photographs.objects.frames import (
-    dot,
-    evaluate_lobes,
-    make_tangents,
-    tilt,
-)
-from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, mix_lobes
+from brdfkit.inverse.photographs.objects.frames import evaluate_lobes, make_tangents, tilt
+from brdfkit.inverse.photographs.objects.tile import Tile
 from brdfkit.model import Model
 
 CUT = 9.0  # c, the size of residuals beyond which they do not count
@@ -132,7 +129,7 @@ def compute_equations(
         ]
         counts &= sum(irradiance) > 0
         residuals = [
-            factors[c] * (irradiance[c] * _mix(a[c], lobe_values) - values[c])
+            factors[c] * (irradiance[c] * mix_lobes(a[c], lobe_values) - values[c])
             for c in range(CHANNELS)
         ]
         square = sum(r * r for r in residuals) * (inverse_scale * inverse_scale / CHANNELS)
@@ -143,7 +140,7 @@ def compute_equations(
         lights = lights + w
         for c in range(CHANNELS):
             scaled = factors[c] * irradiance[c]
-            p, q = (_mix(a[c], slope) * scaled for slope in slopes)
+            p, q = (mix_lobes(a[c], slope) * scaled for slope in slopes)
             rows = [value * scaled for value in lobe_values]
             matrix[c] = [[matrix[c][k][m] + w * rows[k] * rows[m] for m in lobes] for k in lobes]
             coupling[c] = [
@@ -166,11 +163,6 @@ def compute_equations(
     )
     equations = Equations(*sums)
     return equations if prior is None else _add_prior(equations, prior, n, a, scale)
-
-
-def _mix(weights: list[JitFloat], values: list[JitFloat]) -> JitFloat:
-    """Return the sum of lobes times their weights."""
-    return sum(weight * value for weight, value in zip(weights, values, strict=True))
 
 
 def _differentiate_lobes(

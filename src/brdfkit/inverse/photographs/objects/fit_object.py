@@ -15,8 +15,9 @@ from scipy.ndimage import uniform_filter
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted, is_interrupt
+from brdfkit.core.jit.double_precision import to_vector
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
-from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
 from brdfkit.inverse.photographs.objects.calibrate import calibrate
 from brdfkit.inverse.photographs.objects.calibration import (
     STEPS,
@@ -26,7 +27,7 @@ from brdfkit.inverse.photographs.objects.calibration import (
 from brdfkit.inverse.photographs.objects.equations import compute_equations
 from brdfkit.inverse.photographs.objects.fit_pixels import fit_pixels, split_weights
 from brdfkit.inverse.photographs.objects.small_systems import compute_variances
-from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile, split_into_tiles, to_vector
+from brdfkit.inverse.photographs.objects.tile import Tile, split_into_tiles
 
 NEIGHBOURS = 3  # side of the square [pixels] over which normals are averaged for the second pass
 # Standard deviation [radians] of a normal from the mean of its neighbours; smaller deviations are

@@ -9,7 +9,8 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
-from brdfkit.core.jit.double_precision import Vector, choose_float_type
+from brdfkit.core.jit.double_precision import Vector, choose_float_type, to_array, to_vector
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.objects.equations import (
     Equations,
     Prior,
@@ -18,13 +19,7 @@ from brdfkit.inverse.photographs.objects.equations import (
 )
 from brdfkit.inverse.photographs.objects.frames import make_tangents, tilt
 from brdfkit.inverse.photographs.objects.small_systems import compute_step
-from brdfkit.inverse.photographs.objects.tile import (
-    CHANNELS,
-    Tile,
-    to_array,
-    to_numpy,
-    to_vector,
-)
+from brdfkit.inverse.photographs.objects.tile import Tile, to_numpy
 
 DAMPING = 1e-2  # damping of the first step
 BETTER, WORSE = 0.2, 6.0  # factors of the damping after a step that reduces the loss, or does not

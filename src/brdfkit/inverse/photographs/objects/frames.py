@@ -5,20 +5,10 @@ from collections.abc import Mapping
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
+from brdfkit.core.geometry.vectors import dot, normalise
 from brdfkit.core.jit.double_precision import Vector
+from brdfkit.inverse.photographs.maps.texel_parameters import evaluate_cosine_lobes
 from brdfkit.model import Model
-
-SMALLEST_COSINE = 1e-3  # light and view that graze the surface more have no radiance
-
-
-def dot(a: JitVector, b: JitVector) -> JitFloat:
-    """Return the dot product of two vectors."""
-    return a.x * b.x + a.y * b.y + a.z * b.z
-
-
-def normalise(a: JitVector) -> JitVector:
-    """Return the unit vector in the direction of a vector."""
-    return a * dr.rsqrt(dot(a, a))
 
 
 def make_tangents(n: JitVector) -> tuple[JitVector, JitVector]:
@@ -51,10 +41,4 @@ def evaluate_lobes(
     """
     t, b = make_tangents(n)
     wi, wo = (Vector(dot(w, t), dot(w, b), dot(w, n)) for w in (to_camera, to_light))
-    lit = (wi.z > SMALLEST_COSINE) & (wo.z > SMALLEST_COSINE)
-    wi, wo = (
-        Vector(dr.select(lit, w.x, 0), dr.select(lit, w.y, 0), dr.select(lit, w.z, 1))
-        for w in (wi, wo)
-    )
-    lobes = [lobe for _, lobe in model.bind(dict(shapes)).terms()]
-    return [dr.select(lit, (lobe.eval(wi, wo) + 0 * wo.z) * wo.z, 0) for lobe in lobes]
+    return evaluate_cosine_lobes(model, shapes, wi, wo)

@@ -13,17 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.core.jit.double_precision import to_array, to_vector
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.objects.equations import CUT, Reflection
 from brdfkit.inverse.photographs.objects.fit_pixels import Pixels
 from brdfkit.inverse.photographs.objects.frames import make_tangents, tilt
 from brdfkit.inverse.photographs.objects.prediction import TINY, predict
-from brdfkit.inverse.photographs.objects.tile import (
-    CHANNELS,
-    Tile,
-    to_array,
-    to_numpy,
-    to_vector,
-)
+from brdfkit.inverse.photographs.objects.tile import Tile, to_numpy
 
 STEP = 1e-4  # slopes by which normals are tilted for differences
 RIDGE = 1e-9  # added to the diagonal of a matrix, as a share of it

@@ -12,7 +12,7 @@ from brdfkit.core.arguments import to_array, wrong_value_error
 from brdfkit.core.array_types import ArrayLike, BoolArray, FloatArray
 from brdfkit.core.documents import Document, Shown
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.inverse.photographs.capture.lights import Lights
+from brdfkit.inverse.photographs.capture.lights import Lights, to_strength
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
 from brdfkit.inverse.photographs.objects.fit_object import FittedObject
 from brdfkit.inverse.photographs.objects.summary import describe_object
@@ -122,11 +122,8 @@ class ObjectMaps(Shown):
         length = float(np.linalg.norm(towards))
         if not np.isfinite(length) or length == 0:
             raise wrong_value_error("direction", direction, "a vector towards the light")
-        power = to_array("irradiance", irradiance)
-        if power.shape not in ((), (1,), (3,)) or not (np.isfinite(power) & (power >= 0)).all():
-            raise wrong_value_error("irradiance", irradiance, "a number, or three, 0 or above")
-        lights = Lights((towards / length)[None], np.broadcast_to(power, (1, 3)).astype(float))
-        return self.predict(lights)[0]
+        power = to_strength("irradiance", irradiance)
+        return self.predict(Lights((towards / length)[None], power))[0]
 
     @in_turn
     def predict(self, lights: Lights) -> FloatArray:

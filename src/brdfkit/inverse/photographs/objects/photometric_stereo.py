@@ -12,9 +12,10 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitFloat
+from brdfkit.core.geometry.vectors import dot, normalise
 from brdfkit.core.jit.double_precision import Vector, choose_float_type, to_scalar
-from brdfkit.inverse.photographs.objects.frames import dot, normalise
-from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile, to_numpy
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
+from brdfkit.inverse.photographs.objects.tile import Tile, to_numpy
 
 ROUNDS = 20  # rounds of reweighting
 # Differences below this share of the typical brightness count as 0

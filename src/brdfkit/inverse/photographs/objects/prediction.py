@@ -8,12 +8,14 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
-from brdfkit.core.jit.double_precision import choose_float_type
+from brdfkit.core.geometry.vectors import dot
+from brdfkit.core.jit.double_precision import choose_float_type, to_vector
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, mix_lobes
 from brdfkit.inverse.photographs.objects.equations import Reflection
 from brdfkit.inverse.photographs.objects.fit_pixels import split_weights
-from brdfkit.inverse.photographs.objects.frames import dot, evaluate_lobes
-from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile, to_vector
+from brdfkit.inverse.photographs.objects.frames import evaluate_lobes
+from brdfkit.inverse.photographs.objects.tile import Tile
 
 TINY = 1e-30  # smallest value by which differences are divided
 
@@ -27,10 +29,7 @@ def predict(
     for number in range(len(tile.exposures)):
         to_light, irradiance = tile.illuminate(dr.opaque(whole, number))
         lobes = evaluate_lobes(reflection.model, reflection.shapes, n, tile.to_camera, to_light)
-        radiances = [
-            irradiance[c] * sum(w * lobe for w, lobe in zip(a[c], lobes, strict=True))
-            for c in range(CHANNELS)
-        ]
+        radiances = [irradiance[c] * mix_lobes(a[c], lobes) for c in range(CHANNELS)]
         faces = dot(n, to_light) > 0
         dr.eval(radiances, faces)
         yield np.stack([np.array(r) for r in radiances], axis=1), np.array(faces)

@@ -12,6 +12,7 @@ from brdfkit.core.pages import page
 from brdfkit.core.pages.images import apply_colour_map, encode_jpeg, encode_png, shrink_picture
 from brdfkit.core.version import __version__
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
+from brdfkit.inverse.photographs.result.comparison import compute_angles
 
 WIDEST = 640  # largest side of a picture on the page [pixels]
 MARGIN = 4  # pixels around the object that are shown
@@ -100,7 +101,7 @@ def _describe_checks(maps: Any) -> list[dict[str, str]]:
     truth = maps.capture.normals
     if truth is not None and maps.normal_error is not None:
         own = maps.maps["normal"][maps.mask]
-        angle = np.degrees(np.arccos(np.clip((own * truth).sum(axis=1), -1, 1)))
+        angle = compute_angles(own, truth)
         known = np.isfinite(angle)
         picture = maps.capture.to_picture(np.where(known, angle, 0))
         checks.append(

@@ -27,7 +27,7 @@ from brdfkit.inverse.photographs.objects.photometric_stereo import estimate_norm
 from brdfkit.inverse.photographs.objects.prediction import predict_photographs
 from brdfkit.inverse.photographs.objects.tile import Tile, split_into_tiles
 from brdfkit.inverse.photographs.objects.unfinished import NAME, load_state, save_state
-from brdfkit.inverse.photographs.result.comparison import Comparison
+from brdfkit.inverse.photographs.result.comparison import Comparison, compute_angles
 from brdfkit.model import labels
 
 FEWEST_PHOTOGRAPHS = 3
@@ -171,8 +171,8 @@ def _compare(
         errors = predict_photographs(hidden, matt, normals, albedos[:, :, None])
         compared["lambertian_errors"] = Comparison.collect(errors)
     if capture.normals is not None and np.isfinite(capture.normals).all(axis=1).any():
-        compared["normal_error"] = _measure_angle(state.normals, capture.normals)
-        compared["lambertian_normal_error"] = _measure_angle(normals, capture.normals)
+        compared["normal_error"] = _average_angle(state.normals, capture.normals)
+        compared["lambertian_normal_error"] = _average_angle(normals, capture.normals)
     return compared
 
 
@@ -187,8 +187,6 @@ def _fit_lambertian(capture: ObjectCapture, brightness: float) -> tuple[FloatArr
     return np.concatenate(normals), np.concatenate(albedos)
 
 
-def _measure_angle(a: FloatArray, b: FloatArray) -> float:
+def _average_angle(a: FloatArray, b: FloatArray) -> float:
     """Return the mean angle [degrees] between unit vectors (n, 3), where both are known."""
-    cosines = (a * b).sum(axis=1)
-    cosines = cosines[np.isfinite(cosines)]
-    return float(np.degrees(np.arccos(np.clip(cosines, -1, 1))).mean())
+    return float(np.nanmean(compute_angles(a, b)))

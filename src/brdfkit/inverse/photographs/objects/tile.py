@@ -9,12 +9,12 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, JitFloat, JitVector
-from brdfkit.core.jit.double_precision import Vector, choose_float_type
+from brdfkit.core.jit.double_precision import Vector, choose_float_type, to_array, to_vector
 from brdfkit.core.jit.padding import pad
 from brdfkit.inverse.photographs.capture.lights import Lights
 from brdfkit.inverse.photographs.capture.object_capture import ObjectCapture
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 
-CHANNELS = 3
 PAIRS_PER_TILE = 4_000_000  # pairs of a pixel and a photograph in a tile, to limit the memory
 
 
@@ -77,7 +77,9 @@ class Tile:
         real, whole = choose_float_type(), type(light)
         pixel = dr.arange(whole, self.count)
         place = (light * dr.opaque(whole, self.count) + pixel) * CHANNELS
-        values = [real(dr.gather(type(self.values), self.values, place + c)) for c in range(3)]
+        values = [
+            real(dr.gather(type(self.values), self.values, place + c)) for c in range(CHANNELS)
+        ]
         counts = dr.isfinite(values[0] + values[1] + values[2])
         return [dr.select(counts, value, 0) for value in values], counts
 
@@ -111,16 +113,6 @@ def split_into_tiles(pixels: int, lights: int) -> list[slice]:
     """Return slices of the pixels, each with few enough pairs of a pixel and a photograph."""
     size = max(1, PAIRS_PER_TILE // lights)
     return [slice(first, min(first + size, pixels)) for first in range(0, pixels, size)]
-
-
-def to_array(values: AnyArray) -> JitFloat:
-    """Convert numbers of NumPy (n,) to an array of Dr.Jit in double precision."""
-    return choose_float_type()(pad(np.ascontiguousarray(values, float)))
-
-
-def to_vector(directions: FloatArray) -> JitVector:
-    """Convert vectors of NumPy (n, 3) to arrays of Dr.Jit."""
-    return Vector(*(to_array(directions[:, axis]) for axis in range(3)))
 
 
 def to_numpy(vector: JitVector) -> FloatArray:

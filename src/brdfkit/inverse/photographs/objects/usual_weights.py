@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
+from brdfkit.core.jit.double_precision import to_vector
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.objects.calibration import Calibration
 from brdfkit.inverse.photographs.objects.equations import compute_equations
 from brdfkit.inverse.photographs.objects.fit_pixels import Pixels, split_weights
 from brdfkit.inverse.photographs.objects.small_systems import compute_variances
-from brdfkit.inverse.photographs.objects.tile import CHANNELS, Tile, to_vector
+from brdfkit.inverse.photographs.objects.tile import Tile
 
 BEST_SHARE = 0.25  # share of the pixels, those with the surest highlights, that tell usual weights
 SPREAD_ROUNDS = 4  # rounds in which the spread of usual weights is estimated

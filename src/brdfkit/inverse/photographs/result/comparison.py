@@ -65,3 +65,9 @@ def _find_quantiles(values: FloatArray) -> tuple[float, float]:
     """Return the median and the 90th percentile."""
     median, high = np.quantile(values, (0.5, 0.9))
     return float(median), float(high)
+
+
+def compute_angles(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the angles (n,) [degrees] between unit vectors (n, 3); nan where one is unknown."""
+    angles: FloatArray = np.degrees(np.arccos(np.clip((a * b).sum(axis=1), -1, 1)))
+    return angles

@@ -7,12 +7,11 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from brdfkit.core.arguments import to_array, wrong_value_error
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.documents import Document, Shown
 from brdfkit.inverse.photographs.capture.capture import Capture
+from brdfkit.inverse.photographs.capture.lights import to_strength
 from brdfkit.inverse.photographs.capture.observations import illuminate_points
 from brdfkit.inverse.photographs.result.comparison import Comparison
 from brdfkit.inverse.photographs.result.summary import describe_svbrdf
@@ -129,7 +128,7 @@ class Svbrdf(Shown):
             self.capture.cameras[0].origin if viewer is None else _to_point_above("viewer", viewer)
         )
         place = _to_point_above("position", position)[None]
-        power = _check_intensity(intensity)
+        power = to_strength("intensity", intensity)
         from brdfkit.inverse.photographs.maps.maps import predict_radiances
 
         to_light, irradiance = illuminate_points(points, place, power)
@@ -186,14 +185,3 @@ def _to_point_above(what: str, point: Any) -> FloatArray:
     if place[2] <= 0:
         raise wrong_value_error(what, point, "above the sample, its z [m] above 0")
     return place
-
-
-def _check_intensity(value: Any) -> FloatArray:
-    """Return a user's intensity of a light, one number or three, as an array (1, 3)."""
-    intensity = to_array("intensity", value)
-    if (
-        intensity.shape not in ((), (1,), (3,))
-        or not (np.isfinite(intensity) & (intensity >= 0)).all()
-    ):
-        raise wrong_value_error("intensity", value, "a number, or three, 0 or above")
-    return np.broadcast_to(intensity, (1, 3))

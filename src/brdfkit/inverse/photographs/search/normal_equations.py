@@ -24,7 +24,7 @@ from brdfkit.core.jit.double_precision import Vector, choose_float_type, to_arra
 from brdfkit.core.jit.padding import pad
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.inverse.photographs.capture.observations import ARRAYS, Observations
-from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters, mix_lobes
 
 BLOCK = 131_072  # number of texels in a kernel, to limit the memory
 
@@ -162,12 +162,12 @@ def _sum_over_photographs(
         )
         error, products = sums
         for c in range(CHANNELS):
-            residual = irradiance[c] * _mix(weights[c], values) - radiance[c]
+            residual = irradiance[c] * mix_lobes(weights[c], values) - radiance[c]
             error = error + w[c] * residual * residual
             if not differentiate:
                 continue
             columns = [irradiance[c] * f for f in values]
-            columns += [irradiance[c] * _mix(weights[c], slope) for slope in slopes]
+            columns += [irradiance[c] * mix_lobes(weights[c], slope) for slope in slopes]
             for k, column in enumerate(columns):
                 scaled = w[c] * column
                 factors = [residual, *columns[k:]]
@@ -182,8 +182,3 @@ def _sum_over_photographs(
         (dr.zeros(whole, len(x)), state), lambda light, _sums: light < end, add_photograph
     )
     return sums[0], sums[1]
-
-
-def _mix(weights: list[JitFloat], values: list[JitFloat]) -> JitFloat:
-    """Return the sum of lobes times their weights."""
-    return sum(weight * value for weight, value in zip(weights, values, strict=True))
