@@ -79,6 +79,21 @@ def variant():
     return mi.set_variant
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Each worker runs tests in their order, in a half of its own, and helps the other at the end:
+    so tests of one file share fixtures, and tests of one model share compiled kernels."""
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
+
+
+def pytest_ignore_collect(collection_path, config):
+    """A file that does not contain the word is not imported for `-m quick`."""
+    if config.option.markexpr == "quick" and collection_path.suffix == ".py":
+        return True if "quick" not in collection_path.read_text("utf-8") else None
+
+
 def pytest_collection_modifyitems(items):
     """The tests of one function run variant by variant, not model by model."""
     functions = itertools.groupby(items, lambda item: item.nodeid.partition("[")[0])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from batches import mean_and_error, render_batches
 
 from brdfkit.checks.plugin_subject import make_example
 
@@ -52,19 +53,16 @@ def scene(mi, emitter, integrator, size):
     )
 
 
-def mean_and_error(mi, emitter):
+def mean_and_error_of_ball(mi, emitter):
     """The mean of 64 pictures of a ball, and its standard error."""
-    loaded = scene(mi, emitter, "path", 12)
-    pictures = [np.array(mi.render(loaded, spp=16, seed=seed)).mean() for seed in range(64)]
-    return np.mean(pictures), np.std(pictures) / 8
+    pictures = render_batches(scene(mi, emitter, "path", 12), batches=64, samples=16)
+    return mean_and_error(pictures.mean(axis=1))
 
 
 @pytest.fixture(scope="module")
-def mitsubas_mean():
+def mitsubas_mean(mi):
     """That of Mitsuba's `envmap`, once."""
-    import mitsuba as mi
-
-    return mean_and_error(mi, as_envmap(make_example("kdtree_envmap")))
+    return mean_and_error_of_ball(mi, as_envmap(make_example("kdtree_envmap")))
 
 
 EMITTERS = [
@@ -82,7 +80,7 @@ EMITTERS = [
 def test_pictures_are_those_of_mitsubas(name, settings, llvm_variant, mitsubas_mean):
     """Means of 64 renders within 3 standard errors, by multiple importance sampling."""
     (a, error_a), (b, error_b) = (
-        mean_and_error(llvm_variant, make_example(name, **settings)),
+        mean_and_error_of_ball(llvm_variant, make_example(name, **settings)),
         mitsubas_mean,
     )
     assert abs(a - b) < 3 * np.hypot(error_a, error_b)

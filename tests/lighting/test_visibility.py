@@ -12,6 +12,7 @@ import drjit as dr
 import numpy as np
 import psutil
 import pytest
+from batches import mean_and_error, render_batches
 from brdfkit.theses.ergun2015.convex_rays import ExactPlaneMap
 from brdfkit.theses.ergun2015.height_fields import HeightFields
 from hypothesis import given, settings
@@ -517,9 +518,7 @@ def test_without_meshes_it_is_direct_light(llvm_variant, bsdf):
     means = {}
     for name in ("convex_direct", "direct"):
         loaded = scene(mi, {"type": name}, **shapes)
-        integrator = loaded.integrator()
-        seen = [np.array(integrator.render(loaded, seed=i, spp=4)).mean() for i in range(48)]
-        means[name] = np.mean(seen), np.std(seen) / np.sqrt(48)
+        means[name] = mean_and_error(render_batches(loaded, batches=48, samples=4).mean(axis=1))
     (a, error_a), (b, error_b) = means.values()
     assert abs(a - b) < 3.3 * np.hypot(error_a, error_b)
 

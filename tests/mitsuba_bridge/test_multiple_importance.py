@@ -6,6 +6,7 @@ halves the light of one sample each; so would a density that is not that of the 
 
 import numpy as np
 import pytest
+from batches import mean_and_error, render_batches
 from small_files import adaptive, rgl_file
 
 import brdfkit as bk
@@ -38,8 +39,7 @@ def radiance(mi, bsdf, counts, spp=2**13):
             },
         }
     )
-    runs = [np.array(mi.render(scene, spp=spp // 16, seed=s), float).ravel() for s in range(16)]
-    return np.mean(runs, axis=0), np.std(runs, axis=0, ddof=1) / 4
+    return mean_and_error(render_batches(scene, batches=16, samples=spp // 16))
 
 
 MATERIALS = bk.models() | {
