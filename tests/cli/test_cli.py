@@ -898,6 +898,26 @@ assert not {heavy} & set(sys.modules), {heavy} & set(sys.modules)
     assert "Usage" in helped.stdout
 
 
+def test_a_fit_starts_no_library_that_it_does_not_need(tmp_path):
+    """Each of these takes as much processor time to import as the fit of a small file takes."""
+    heavy = {"mitsuba", "matplotlib", "scipy.stats", "scipy.optimize", "colour", "PIL", "requests"}
+    angles = [(i, abs(o), 180 * (o >= 0)) for i in (10, 40) for o in range(-75, 76, 15)]
+    lines = [f"{i},0,{o},{phi},{0.1 + 1 / (1 + (i - o) ** 2)}" for i, o, phi in angles]
+    (tmp_path / "mine.csv").write_text("\n".join(["theta_i,phi_i,theta_o,phi_o,Y", *lines]))
+    code = f"""
+import sys
+from brdfkit.cli import main
+for file in "mine.csv", "plaster":
+    main(["fit", file, "-m", "ggx", "-o", "fits", "--force"], standalone_mode=False)
+    assert not {heavy} & set(sys.modules), (file, {heavy} & set(sys.modules))
+"""
+    fitted = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert fitted.returncode == 0, fitted.stderr
+    assert "ggx fitted to plaster" in fitted.stdout
+
+
 def test_program(tmp_path):
     """The installed program, its status, and a terminal that knows ASCII only."""
     page = run("models", "ward", PYTHONIOENCODING="ascii")

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray
+from brdfkit.core.quasi_random import draw_halton_points
 from brdfkit.images.ball.half_vectors import Brdf, HalfVectors
 from brdfkit.images.ball.normals import find_normals
 from brdfkit.images.ball.pixels import draw_directions, sum_pairs
@@ -39,10 +40,8 @@ def _place_pixels(side: int) -> tuple[AnyArray, AnyArray, AnyArray]:
 
 def _compute_radiance(brdf: Brdf, x: AnyArray, y: AnyArray) -> AnyArray:
     """Compute the radiance (n, channels) of the ball at the coordinates `x`, `y` (n,)."""
-    from scipy.stats import qmc
-
     # All pixels use the same random points, so that their errors are alike and show no grain
-    points = np.stack([qmc.Halton(3, rng=seed).random(DIRECTIONS) for seed in range(2)])
+    points = np.stack([draw_halton_points(DIRECTIONS, 3, seed) for seed in range(2)])
     for_light, for_brdf = np.repeat(points[:, None], len(x), axis=1)
     normals, half_vectors = find_normals(x, y), HalfVectors(brdf)
     wi, wo, shares = draw_directions(normals, LIGHT, half_vectors, 90.0, for_light, for_brdf)

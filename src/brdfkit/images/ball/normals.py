@@ -4,6 +4,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.geometry.directions import normalize
+from brdfkit.core.quasi_random import draw_halton_points
 from brdfkit.images.ball.half_vectors import HalfVectors
 from brdfkit.images.ball.lights import LightSampling
 
@@ -22,11 +23,9 @@ def draw_normals(
     the material's distribution of half vectors, about the half vectors of camera and light, so that
     even the narrow highlight of a small lamp gets some normals.
     """
-    from scipy.stats import qmc
-
-    *point, choice, source = qmc.Halton(5, rng=rng).random(count).T
+    *point, choice, source = draw_halton_points(count, 5, rng).T
     points = np.stack(point, axis=1)
-    centres = normalize(VIEW + light.sample(qmc.Halton(3, rng=rng).random(SOURCES)))
+    centres = normalize(VIEW + light.sample(draw_halton_points(SOURCES, 3, rng)))
     about = make_frames(centres[(source * SOURCES).astype(int)])
     normals = (half_vectors.draw_half_vectors(points)[:, None] @ about)[:, 0]
     # Half of the normals, and those that face away from the camera, become evenly spread ones

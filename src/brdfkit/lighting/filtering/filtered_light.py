@@ -17,6 +17,7 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.jit.padding import pad
+from brdfkit.core.quasi_random import draw_halton_points
 from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips
 from brdfkit.lighting.filtering.light_filtering import LightFiltering
 from brdfkit.mitsuba_bridge.arrays import Rows
@@ -150,12 +151,11 @@ class LightDirections:
     def __init__(self, emitter: MitsubaObject, count: int, rays: int) -> None:
         import drjit as dr
         import mitsuba as mi
-        from scipy.stats import qmc
 
         self.rays, self.per_ray = rays, -(-count // rays)
         # Points of Halton's sequence are evenly spread, even a few consecutive ones as each ray
         # takes
-        u = qmc.Halton(2, scramble=False).random(1 + rays * self.per_ray)[1:].astype(np.float32)
+        u = draw_halton_points(1 + rays * self.per_ray, 2, None)[1:].astype(np.float32)
         origin = dr.zeros(mi.SurfaceInteraction3f, len(u))
         drawn, _ = emitter.sample_direction(origin, mi.Point2f(u.T))
         directions, density = np.array(drawn.d).T, np.array(drawn.pdf)[:, None]

@@ -127,14 +127,14 @@ def make_measured_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray],
 
     For a table it tells which pairs lie in a valid cell, in a completed one which are no guesses.
     """
-    from scipy.spatial import cKDTree
-
     if data.evidence is not None and data._table is not None:
         return lambda wi, wo: find_evidence(data, wi, wo) != GUESSED
     if data._table is not None:
         table = data._table
         known = np.asarray(np.isfinite(table.values).all(axis=-1))
         return lambda wi, wo: known[table.find_cells(wi, wo)]
+    from scipy.spatial import cKDTree
+
     samples, anisotropic = data.samples.at(data.samples.valid), data.anisotropic
     tree = cKDTree(compute_sample_coordinates(samples.wi, samples.wo, anisotropic))
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_half_difference, to_half_difference
+from brdfkit.core.quasi_random import draw_sobol_points
 from brdfkit.model.samples.cells import minimum_cosine
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 
@@ -73,16 +74,16 @@ def solid_angle_density(theta_h: FloatArray, theta_d: FloatArray) -> FloatArray:
 @cache
 def integrate_measure(max_angle: float, measure: str) -> float:
     """Integrate a measure over all direction pairs within `max_angle` [degrees] of the normal."""
-    steps = [(np.arange(n) + 0.5) / n for n in GRID]
-    theta_h, theta_d, phi_d = np.meshgrid(*steps, indexing="ij")
-    theta_h, theta_d, phi_d = theta_h * np.pi / 2, theta_d * np.pi / 2, phi_d * 2 * np.pi
-    wi, wo = from_half_difference(theta_h, theta_d, phi_d)
-    least = minimum_cosine(max_angle)
-    inside = (wi[..., 2] > least) & (wo[..., 2] > least)
-    cell = (np.pi / 2) ** 2 * 2 * np.pi / inside.size
-    return float(
-        cell * np.sum(solid_angle_density(theta_h, theta_d)[inside] ** (MEASURES[measure] or 0.0))
-    )
+    theta_h, theta_d, phi_d = ((np.arange(n) + 0.5) / n for n in GRID)
+    theta_h, theta_d, phi_d = theta_h[:, None] * np.pi / 2, theta_d * np.pi / 2, phi_d * 2 * np.pi
+    # The cosines of both angles to the normal, cosθ_h cosθ_d ± sinθ_h sinθ_d cosφ_d, exceed the
+    # least one where |cosφ_d| is below a limit; count these φ_d
+    above = np.cos(theta_h) * np.cos(theta_d) - minimum_cosine(max_angle)
+    limit = above / (np.sin(theta_h) * np.sin(theta_d))
+    counts = np.searchsorted(np.sort(np.abs(np.cos(phi_d))), limit)
+    cell = (np.pi / 2) ** 2 * 2 * np.pi / np.prod(GRID)
+    density = solid_angle_density(theta_h, theta_d) ** (MEASURES[measure] or 0.0)
+    return float(cell * np.sum(counts * density))
 
 
 def estimate_extents(
@@ -124,10 +125,8 @@ def _spread_points(
     Returns their directions (m, 3) and (m, 3), and the amounts (m, 2) of angles and solid angle
     that each point represents. The points are quasi-random (Sobol).
     """
-    from scipy.stats import qmc
-
     count = int(np.clip(POINTS * len(wi), FEWEST_POINTS, LARGEST_NUMBER))
-    u = qmc.Sobol(4 if anisotropic else 3, rng=0).random_base2(int(np.ceil(np.log2(count))))
+    u = draw_sobol_points(int(np.ceil(np.log2(count))), 4 if anisotropic else 3, seed=0)
     edges = np.linspace(0, 1, BINS + 1) ** 2
     h = wi + wo
     theta = np.arctan2(np.hypot(h[:, 0], h[:, 1]), h[:, 2]) / (np.pi / 2)

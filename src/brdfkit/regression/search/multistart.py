@@ -12,6 +12,7 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.progress_bar import Progress
+from brdfkit.core.quasi_random import draw_halton_points
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_subset
@@ -59,9 +60,7 @@ def make_start_points(default: FloatArray, count: int, seed: int) -> FloatArray:
 @lru_cache
 def _spread_points(dimensions: int, count: int, seed: int) -> FloatArray | tuple[()]:
     """Return points (count, dimensions) in the unit cube, by a Halton sequence with a `seed`."""
-    from scipy.stats import qmc
-
-    return qmc.Halton(dimensions, rng=seed).random(count) if count and dimensions else ()
+    return draw_halton_points(count, dimensions, seed) if count and dimensions else ()
 
 
 def make_part_problems(whole: Problem, rng: np.random.Generator) -> list[Problem]:
