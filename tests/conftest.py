@@ -1,5 +1,6 @@
 """Shared by all tests: the variant, the models, and where third-party measurements lie."""
 
+import gc
 import itertools
 import os
 import signal
@@ -92,6 +93,17 @@ def pytest_ignore_collect(collection_path, config):
     """A file that does not contain the word is not imported for `-m quick`."""
     if config.option.markexpr == "quick" and collection_path.suffix == ".py":
         return True if "quick" not in collection_path.read_text("utf-8") else None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Collect no garbage meanwhile, and do not look through the thousands of tests later."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+        gc.freeze()
 
 
 def pytest_collection_modifyitems(items):
