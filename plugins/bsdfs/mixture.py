@@ -10,6 +10,7 @@ and glossy plastics, which two lobes fit better than one; measurements seldom di
 """
 
 from dataclasses import replace
+from typing import ClassVar
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model, Parameter, labels, option
@@ -22,6 +23,8 @@ NARROWER = 3.0
 
 class Mixture(Model):
     models = option("ggx+ggx", None, "the models, joined by +")
+    # What `list_summands` found, which evaluates models: a renderer asks for it again and again
+    _summands: ClassVar[list[tuple[str, type[Model], list[str]]]]
 
     @classmethod
     def label(cls) -> str:
@@ -33,6 +36,13 @@ class Mixture(Model):
 
         The weights are names; the diffuse term is left out for every model but the first.
         """
+        if "_summands" not in cls.__dict__:
+            cls._summands = cls._find_summands()
+        return cls._summands
+
+    @classmethod
+    def _find_summands(cls) -> list[tuple[str, type[Model], list[str]]]:
+        """Find what `list_summands` returns."""
         named, parts = cls.models.split("+"), []
         if len(named) < 2:
             raise BrdfkitError(
