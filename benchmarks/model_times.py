@@ -16,7 +16,7 @@ from rich.table import Table as Printed
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences
-from brdfkit.checks.sampling import compute_weight_spread
+from brdfkit.checks.sampling import compute_weight_spreads
 from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.jit import llvm
 from brdfkit.model.samples import Table
@@ -108,7 +108,7 @@ def main():
             table.add_row(name, *[""] * len(columns), "", *row)
             continue
         subject = Subject(bk.models()[name]())
-        spreads = [f"{compute_weight_spread(subject, degrees):.2f}" for degrees in INCIDENCES]
+        spreads = [f"{spread:.2f}" for spread in compute_weight_spreads(subject)]
         brightest = max(bk.albedo(subject.material, wi).max() for _, wi in list_incidences())
         fits = [f"{time_fit(name, data, loss):.2f}" for loss in bk.losses.named.by_sample]
         table.add_row(name, *spreads, f"{brightest:.3f}", *row, *fits)

@@ -16,8 +16,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import INCIDENCES, Subject
-from brdfkit.checks.sampling import compute_weight_spread
+from brdfkit.checks.material_subject import Subject
+from brdfkit.checks.sampling import compute_weight_spreads
 from brdfkit.core import catalogue
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.geometry.directions import from_angles
@@ -80,7 +80,7 @@ def measure_material(name, ward):
     subject = Subject(material)
     bsdf = subject.bsdf
     seconds = time.perf_counter() - began
-    stds = " ".join(f"{compute_weight_spread(subject, d, SAMPLES):.2f}" for d in INCIDENCES)
+    stds = " ".join(f"{spread:.2f}" for spread in compute_weight_spreads(subject, SAMPLES))
     albedos = [bk.albedo(material, from_angles(np.radians(d), 0.0)).mean() for d in (0, 60)]
     picture, took = render_ball(bsdf)
     _, unit = render_ball(ward)  # measured again, because the load of the machine may change

@@ -7,9 +7,9 @@ import pytest
 from random_models import random_model
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import INCIDENCES, Subject
+from brdfkit.checks.material_subject import Subject
 from brdfkit.checks.registry import checks
-from brdfkit.checks.sampling import compute_weight_spread
+from brdfkit.checks.sampling import compute_weight_spreads
 from brdfkit.core import catalogue
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.geometry.vectors import half_vector
@@ -87,14 +87,11 @@ def test_random_model(form, configured):
 def test_weights_of_samples_vary_little(configured):
     """Standard deviation of the weight ≤ 0.75 of its mean at the defaults, to grazing; ≤ 1.5 for
     12 random sets of values, of lobes as narrow as they come."""
-    subject = Subject(configured())
-    spreads = [compute_weight_spread(subject, degrees, samples=100_000) for degrees in INCIDENCES]
+    spreads = compute_weight_spreads(Subject(configured()), samples=100_000)
     assert max(spreads) <= 0.75, spreads
     for seed in range(12):
         subject = Subject(random_model(configured, seed, full_bounds=True))
-        spreads = [
-            compute_weight_spread(subject, degrees, samples=20_000) for degrees in INCIDENCES
-        ]
+        spreads = compute_weight_spreads(subject, samples=20_000)
         assert max(spreads) <= 1.5, (subject.material, spreads)
 
 

@@ -16,7 +16,7 @@ from brdfkit.checks.material_subject import (
     list_incidences,
 )
 from brdfkit.checks.registry import checks
-from brdfkit.checks.sampling import compute_weight_spread
+from brdfkit.checks.sampling import compute_weight_spreads
 from brdfkit.core import catalogue
 from brdfkit.core.colours import import_colour_package
 from brdfkit.core.geometry.directions import from_angles
@@ -246,9 +246,8 @@ def cosine_spread(material, degrees):
 def test_weights_of_samples_vary_little(name, llvm_variant):
     """Standard deviation ≤ 0.5 of the mean at every incidence, and never worse than by cosine."""
     material = MATERIALS.get(name, lambda: bk.load(name))()
-    subject = Subject(material)
-    for degrees in INCIDENCES:
-        found = compute_weight_spread(subject, degrees, samples=200_000)
+    spreads = compute_weight_spreads(Subject(material), samples=200_000)
+    for degrees, found in zip(INCIDENCES, spreads, strict=True):
         assert found <= 0.5
         assert found <= max(cosine_spread(material, degrees), 0.25), degrees
 
@@ -263,9 +262,7 @@ RGL = tuple(
 @pytest.mark.parametrize("name", GLOSSY + RGL)
 def test_real_materials_are_sampled_well(name, measured_data, llvm_variant):
     subject = Subject(bk.load(measured_data / name).rgb)
-    spreads = [
-        compute_weight_spread(subject, degrees, samples=200_000) for degrees in INCIDENCES[:4]
-    ]
+    spreads = compute_weight_spreads(subject, samples=200_000)[:4]
     assert max(spreads) <= 0.5, spreads
     for check in ("chi squared", "coverage"):
         passed, figure = checks["bsdfs"][check](subject)

@@ -1,6 +1,7 @@
 """Checks the sampling of a BSDF: its density, its weights, and that it misses no lobe."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences
 from brdfkit.checks.registry import check_of, larger_or_nan
 from brdfkit.checks.variants import stack_channels
 from brdfkit.core.array_types import (
+    AnyArray,
     FloatArray,
     JitColour,
     JitFloat,
@@ -145,15 +147,22 @@ def check_weights(subject: Subject) -> tuple[bool, str]:
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 
-def compute_weight_spread(subject: Subject, degrees: float, samples: int = SAMPLES) -> float:
+def compute_weight_spreads(subject: Subject, samples: int = SAMPLES) -> list[float]:
     """Return the standard deviation of the weights of samples, relative to their mean.
 
-    A small number means little noise in a rendering. `degrees` is an angle of incidence, one of
-    `INCIDENCES`.
+    There is a number for each angle of `INCIDENCES`, from so many `samples`. A small number means
+    little noise in a rendering.
     """
-    spectrum = sample_weights(subject, dict(list_incidences())[degrees], samples)
-    weights = stack_channels(spectrum, samples).mean(axis=0)
-    return float(weights.std() / weights.mean())
+    import mitsuba as mi
+
+    # One evaluation for all angles, because tracing it takes longer than some thousand samples
+    angles = [wi for _, wi in list_incidences()]
+    si = subject.make_interaction(np.repeat(angles, samples, axis=0))
+    u = [pad(np.tile(row, len(angles))) for row in _draw_rows(samples, seed=1)]
+    _, spectrum = subject.bsdf.sample(mi.BSDFContext(), si, mi.Float(u[0]), mi.Point2f(*u[1:]))
+    weights = stack_channels(spectrum, len(u[0])).mean(axis=0).reshape(len(angles), samples)
+    spreads: list[float] = (weights.std(axis=1) / weights.mean(axis=1)).tolist()
+    return spreads
 
 
 def sample_weights(
@@ -170,5 +179,11 @@ def draw_uniform_numbers(n: int, seed: int) -> tuple[JitFloat, JitVector]:
     """Draw the uniform random numbers for `n` samples of a BSDF, as (mi.Float, mi.Point2f)."""
     import mitsuba as mi
 
-    u = [pad(row) for row in np.random.default_rng(seed).random((3, n), np.float32)]
+    u = _draw_rows(n, seed)
     return mi.Float(u[0]), mi.Point2f(u[1], u[2])
+
+
+@lru_cache(maxsize=4)  # drawing a million takes as long as some BSDFs take to use them
+def _draw_rows(n: int, seed: int) -> list[AnyArray]:
+    """Draw three rows (n,) of uniform random numbers that Dr.Jit can read without a copy."""
+    return [pad(row) for row in np.random.default_rng(seed).random((3, n), np.float32)]
