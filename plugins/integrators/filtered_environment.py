@@ -31,6 +31,7 @@ mesh take minutes.
 """
 
 from collections.abc import Callable, Sequence
+from math import inf
 from typing import Any
 
 import drjit as dr
@@ -102,7 +103,9 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             environment = _require_one_environment(scene)
-            unshadowed = self.light.filter_if_changed(environment)
+            unshadowed = self.light.filter_if_changed(
+                environment, lambda: self.find_sharpest_lobe(scene, sampler)
+            )
             light: Light = unshadowed
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
@@ -114,6 +117,12 @@ def define(mi: MitsubaModule) -> type:
             reflected = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, reflected, behind)), active, []
+
+        def find_sharpest_lobe(self, scene: MitsubaObject, sampler: MitsubaObject) -> float:
+            """Return the largest concentration κ of the lobes of light; infinite if not known."""
+            if self.shadows != "none":
+                return inf  # shadow rays are weighted by the light over sharper lobes
+            return self.shading.find_sharpest_lobe(scene, sampler)
 
         def make_visibility_test(
             self, scene: MitsubaObject, si: MitsubaObject, active: JitMask

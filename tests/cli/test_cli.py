@@ -918,6 +918,22 @@ for file in "mine.csv", "plaster":
     assert "ggx fitted to plaster" in fitted.stdout
 
 
+def test_a_preview_starts_no_library_that_it_does_not_need(tmp_path):
+    """Importing them took as much processor time as all else that a preview does."""
+    heavy = {"matplotlib", "scipy", "colour", "requests", "OpenEXR"}
+    code = f"""
+import sys
+from brdfkit.cli import main
+main(["render", "ggx", "--preview", "--size", "32"], standalone_mode=False)
+assert not {heavy} & set(sys.modules), {heavy} & set(sys.modules)
+"""
+    shown = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert shown.returncode == 0, shown.stderr
+    assert (tmp_path / "ggx.png").exists()
+
+
 def test_program(tmp_path):
     """The installed program, its status, and a terminal that knows ASCII only."""
     page = run("models", "ward", PYTHONIOENCODING="ascii")

@@ -248,6 +248,18 @@ def test_it_follows_the_light_and_the_material(llvm_variant):
     assert shown(loaded).max() < 0.8 * brighter.max()
 
 
+def test_levels_that_a_matt_ball_does_not_need_are_filtered_for_a_glossy_one(llvm_variant):
+    mi = llvm_variant
+    light = mi.load_dict(make_example("kdtree_envmap"))
+    matt, glossy = {"type": "diffuse"}, {"type": "ward", "alpha_u": 0.02, "alpha_v": 0.02}
+    one, fresh = mi.load_dict(ours()), mi.load_dict(ours())
+    shown(scene(mi, one, matt, light))
+    assert one.light.sharpest < one.light.lobes.sharpest
+    found = shown(scene(mi, one, glossy, light))
+    np.testing.assert_array_equal(found, shown(scene(mi, fresh, glossy, light)))
+    assert one.light.sharpest == np.inf
+
+
 @pytest.mark.quick
 def test_what_is_told_apart(llvm_variant):
     mi = llvm_variant

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from functools import cache
+from importlib.util import find_spec
 from math import ceil, isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -166,11 +168,17 @@ def _to_false_colours(difference: FloatArray) -> AnyArray:
 
 def _load_font(size: int, bold: bool = False) -> Any:
     """Load the font DejaVu Sans of a `size` [pixels]."""
-    import matplotlib as mpl
     from PIL import ImageFont
 
-    file = f"fonts/ttf/DejaVuSans{'-Bold' if bold else ''}.ttf"  # a font in matplotlib's package
-    return ImageFont.truetype(str(Path(mpl.get_data_path(), file)), size)
+    file = f"DejaVuSans{'-Bold' if bold else ''}.ttf"
+    return ImageFont.truetype(str(_find_fonts() / file), size)
+
+
+@cache
+def _find_fonts() -> Path:
+    """Return the folder of the fonts in matplotlib's package, whose import would take long."""
+    package: Any = find_spec("matplotlib")
+    return Path(package.origin).parent / "mpl-data" / "fonts" / "ttf"
 
 
 def draw_caption(

@@ -93,7 +93,8 @@ class Request:
     "--preview",
     is_flag=True,
     help="Show the materials without noise and shadows, lit by --envmap (default: studio). It "
-    "takes a few seconds, mostly to start; in Python, further pictures take a tenth of a second.",
+    "takes one to two seconds, mostly to start, and the first time some more to compile; in "
+    "Python, further pictures take a tenth of a second.",
 )
 @click.option(
     "--shadows",

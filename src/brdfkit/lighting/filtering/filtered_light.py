@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping
+from math import inf
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,13 +17,12 @@ from brdfkit.core.array_types import (
     JitVector,
     MitsubaObject,
 )
-from brdfkit.core.jit.padding import pad
 from brdfkit.core.quasi_random import draw_halton_points
+from brdfkit.lighting.filtering.emitter_radiance import make_radiance_function
 from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips
 from brdfkit.lighting.filtering.light_filtering import LightFiltering
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-WAVELENGTHS = 96  # evenly spaced wavelengths at which an emitter is evaluated in spectral variants
 # number of directions drawn by an emitter that are tested for shadows of the irradiance
 LIGHT_DIRECTIONS = 256
 FILTERS: dict[str, type[LobeMaps | Mips]] = {"lobes": LobeMaps, "mips": Mips}
@@ -50,6 +50,7 @@ class FilteredLight:
         self.kind, self.side = kind, side
         # the filtered emitter, and a digest of its parameters
         self.source: tuple[MitsubaObject, bytes] | None = None
+        self.sharpest = inf  # the largest concentration κ of the lobes for which it was filtered
         # The emitter's axes, when it was filtered and now
         self.filtered_axes: FloatArray = np.eye(3)
         self.axes: FloatArray = np.eye(3)
@@ -70,28 +71,45 @@ class FilteredLight:
         """
         if self.source is None:
             source, axes = self._describe_emitter(emitter)
-            filtering = LightFiltering(make_radiance_function(emitter), self.kind, self.side)
+            filtering = LightFiltering(make_radiance_function(emitter), self.kind, self.side, inf)
             self.begun = filtering, source, axes
             filtering.begin()
 
-    def filter_if_changed(self, emitter: MitsubaObject) -> FilteredLight:
+    def filter_if_changed(
+        self, emitter: MitsubaObject, find_sharpest: Callable[[], float] = lambda: inf
+    ) -> FilteredLight:
         """Filter the `emitter` unless it is unchanged since the last call; return this object.
 
-        If it has only turned, look-ups are turned instead, without a new kernel.
+        If it has only turned, look-ups are turned instead, without a new kernel. `find_sharpest`
+        returns the largest concentration κ of the lobes that are looked up, so that the finest
+        levels, which take longest, are first filtered when they are needed.
         """
         source, axes = self._describe_emitter(emitter)
         turn = _find_turn(self.filtered_axes, axes)
         if self.source != source or turn is None:
-            filtering, before = self._find_filtering(source, axes)
-            levels, irradiance = filtering.finish()
-            self.lobes, self.irradiances = self.kind(levels), FilteredMap([irradiance])
-            self.source, self.filtered_axes, self.begun = source, before, None
-            turn = _find_turn(before, axes)
-            assert turn is not None, "it was begun with axes that are only turned by now"
-            self._turn_look_ups(axes, turn)
-        elif not np.array_equal(axes, self.axes):
-            self._turn_look_ups(axes, turn)
+            turn = self._filter(source, axes, find_sharpest())
+        elif self.sharpest < inf and find_sharpest() > self.sharpest:
+            turn = self._filter(source, axes, inf)
+        elif np.array_equal(axes, self.axes):
+            return self
+        self._turn_look_ups(axes, turn)
         return self
+
+    def _filter(
+        self, source: tuple[MitsubaObject, bytes], axes: FloatArray, sharpest: float
+    ) -> FloatArray:
+        """Filter an emitter with these axes for lobes up to κ = `sharpest`; return its turn since.
+
+        It has turned if it was begun before.
+        """
+        filtering, before = self._find_filtering(source, axes, sharpest)
+        levels, irradiance = filtering.finish()
+        self.lobes, self.irradiances = self.kind(levels), FilteredMap([irradiance])
+        self.source, self.filtered_axes, self.begun = source, before, None
+        self.sharpest = filtering.sharpest
+        turn = _find_turn(before, axes)
+        assert turn is not None, "it was begun with axes that are only turned by now"
+        return turn
 
     def _describe_emitter(
         self, emitter: MitsubaObject
@@ -104,10 +122,11 @@ class FilteredLight:
         return (emitter, digest), _find_axes(parameters)
 
     def _find_filtering(
-        self, source: tuple[MitsubaObject, bytes], axes: FloatArray
+        self, source: tuple[MitsubaObject, bytes], axes: FloatArray, sharpest: float
     ) -> tuple[LightFiltering, FloatArray]:
         """Return what was begun of an emitter, or begin now; and the emitter's axes at that time.
 
+        If it begins now, it is for lobes of a concentration up to `sharpest`.
         It was begun in vain if the emitter has done more than turn since.
         """
         if self.begun is not None:
@@ -115,7 +134,7 @@ class FilteredLight:
             if begun == source and _find_turn(before, axes) is not None:
                 return filtering, before
         radiance = make_radiance_function(source[0])
-        return LightFiltering(radiance, self.kind, self.side), axes
+        return LightFiltering(radiance, self.kind, self.side, sharpest), axes
 
     def _turn_look_ups(self, axes: FloatArray, turn: FloatArray) -> None:
         """Turn the directions of look-ups by a matrix (3, 3), for an emitter with these axes."""
@@ -168,43 +187,6 @@ class LightDirections:
 
         place = ray * self.per_ray + i
         return self.directions.at(place, mi.Vector3f), self.powers.at(place, mi.Color3f)
-
-
-def make_radiance_function(emitter: MitsubaObject) -> Callable[[FloatArray], FloatArray]:
-    """Return a function that evaluates an environment emitter in NumPy, in any variant.
-
-    It takes unit vectors (n, 3), and returns the radiance (n, 3) from there in linear sRGB.
-    """
-    import drjit as dr
-    import mitsuba as mi
-
-    def radiance(directions: FloatArray) -> FloatArray:
-        si = dr.zeros(mi.SurfaceInteraction3f, len(directions))
-        towards = np.ascontiguousarray(-directions.T, np.float32)
-        si.wi = mi.Vector3f(*(pad(component) for component in towards))
-        if mi.is_spectral:
-            value = _integrate_spectrum(emitter, si)
-        else:
-            value = np.array(mi.unpolarized_spectrum(emitter.eval(si)), float).T
-        # A uniform emitter returns one value for all directions, and mono variants one channel
-        return np.broadcast_to(value, (len(directions), 3))
-
-    return radiance
-
-
-def _integrate_spectrum(emitter: MitsubaObject, si: MitsubaObject) -> FloatArray:
-    """Integrate an emitter's spectrum at `si` to radiance (n, 3) in linear sRGB."""
-    import mitsuba as mi
-
-    first, last = float(mi.MI_CIE_MIN), float(mi.MI_CIE_MAX)
-    each = len(si.wavelengths)
-    wavelengths = first + (np.arange(WAVELENGTHS) + 0.5) / WAVELENGTHS * (last - first)
-    total: Any = 0.0
-    for few in wavelengths.reshape(-1, each):
-        si.wavelengths = type(si.wavelengths)(*few.tolist())
-        value = mi.unpolarized_spectrum(emitter.eval(si))
-        total = total + np.array(mi.spectrum_to_srgb(value, si.wavelengths), float).T
-    return total * (last - first) / (WAVELENGTHS // each)
 
 
 def _find_axes(parameters: Mapping[str, Any]) -> FloatArray:

@@ -76,8 +76,10 @@ class Mips(FilteredMap):
         super().__init__(maps)
 
     @staticmethod
-    def make_levels(finest: FloatArray, picture: FloatArray) -> list[FloatArray]:
-        """Return the levels (2, side, side, 3); they do not depend on the `picture`."""
+    def make_levels(
+        finest: FloatArray, picture: FloatArray, sharpest: float = math.inf
+    ) -> list[FloatArray]:
+        """Return the levels (2, side, side, 3); they are made of the finest level alone."""
         return levels.make_mips(finest)
 
     def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
@@ -93,9 +95,11 @@ class LobeMaps(FilteredMap):
         super().__init__(maps)
 
     @staticmethod
-    def make_levels(finest: FloatArray, picture: FloatArray) -> list[FloatArray]:
-        """Return the levels (2, side, side, 3)."""
-        return [finest, *levels.convolve_with_lobes(picture, finest.shape[1])]
+    def make_levels(
+        finest: FloatArray, picture: FloatArray, sharpest: float = math.inf
+    ) -> list[FloatArray]:
+        """Return the levels (2, side, side, 3), for look-ups of lobes up to κ = `sharpest`."""
+        return [finest, *levels.convolve_with_lobes(picture, finest.shape[1], sharpest)]
 
     def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
         """Return the mean radiance over a von Mises-Fisher lobe of concentration `kappa`."""

@@ -4,6 +4,8 @@ All pixels use the same random numbers, so that pictures have no noise [Colbert 
 a BSDF is uniform over its surface, its directions are stored for a grid of views.
 """
 
+from math import inf
+
 from brdfkit.core.array_types import JitColour, JitInt, JitMask, MitsubaObject
 from brdfkit.lighting.filtering.bsdf_directions import OVERLAP, Directions, split_off_constant
 from brdfkit.lighting.filtering.filtered_light import Light
@@ -44,17 +46,11 @@ class FilteredSampling:
         import drjit as dr
         import mitsuba as mi
 
-        rays = sampler.sample_count()
-        directions = self.directions
-        if directions is None or directions.rays != rays:
-            directions = self.directions = Directions(self.count, rays)
-            self.views = CacheByValues(lambda bsdf: ViewDirections(bsdf, directions))
-        total, bsdfs = mi.UnpolarizedSpectrum(0), list_distinct_bsdfs(scene)
-        uniform = [bsdf for bsdf in bsdfs if is_uniform_over_surface(bsdf)]
+        total, directions = mi.UnpolarizedSpectrum(0), self._find_directions(sampler)
+        uniform, others = _sort_bsdfs(scene)
         for bsdf, views in self.views.get_or_make_results(uniform):
             here = active & (si.bsdf() == mi.BSDFPtr(bsdf))
             total = dr.select(here, views.radiance(si, light, here), total)
-        others = [bsdf for bsdf in bsdfs if bsdf not in uniform]
         for separate in (True, False):
             group = [bsdf for bsdf in others if has_separate_diffuse_part(bsdf) == separate]
             if group:
@@ -62,6 +58,27 @@ class FilteredSampling:
                 shown = self._estimate_radiance_at_points(si, light, here, separate, directions)
                 total = dr.select(here, shown, total)
         return total
+
+    def find_sharpest_lobe(self, scene: MitsubaObject, sampler: MitsubaObject) -> float:
+        """Return the largest concentration κ of the lobes of light, infinite where it is unknown.
+
+        It is known where the BSDFs of all surfaces are stored for a grid of views.
+        """
+        self._find_directions(sampler)
+        uniform, others = _sort_bsdfs(scene)
+        if others:
+            return inf
+        stored = self.views.get_or_make_results(uniform)
+        return max((views.find_sharpest_lobe() for _, views in stored), default=inf)
+
+    def _find_directions(self, sampler: MitsubaObject) -> Directions:
+        """Return the random numbers for the sampler's number of rays per pixel."""
+        rays = sampler.sample_count()
+        directions = self.directions
+        if directions is None or directions.rays != rays:
+            directions = self.directions = Directions(self.count, rays)
+            self.views = CacheByValues(lambda bsdf: ViewDirections(bsdf, directions))
+        return directions
 
     def _estimate_radiance_at_points(
         self,
@@ -95,3 +112,10 @@ class FilteredSampling:
         received = light.irradiance(si.to_world(mi.Vector3f(0, 0, dr.sign(si.wi.z))))
         total = total / directions.per_ray + dr.pi * c * spectrum(received, si)
         return dr.maximum(total, 0)
+
+
+def _sort_bsdfs(scene: MitsubaObject) -> tuple[list[MitsubaObject], list[MitsubaObject]]:
+    """Return the BSDFs in a scene that are uniform over surfaces, and the others."""
+    bsdfs = list_distinct_bsdfs(scene)
+    uniform = [bsdf for bsdf in bsdfs if is_uniform_over_surface(bsdf)]
+    return uniform, [bsdf for bsdf in bsdfs if bsdf not in uniform]

@@ -29,12 +29,15 @@ class LightFiltering:
     """A light as it is now, which is filtered when `levels` or `irradiances` are first needed.
 
     `radiance` is the function that `make_radiance_function` returns, `kind` the class that looks
-    the light up, and `side` the size of its finest level [texels]. `begin` filters in a thread;
-    who needs the result earlier waits for that thread.
+    the light up, and `side` the size of its finest level [texels]. Lobes of a concentration above
+    `sharpest` are not looked up. `begin` filters in a thread; who needs the result earlier waits
+    for that thread.
     """
 
-    def __init__(self, radiance: Radiance, kind: type[LobeMaps | Mips], side: int) -> None:
-        self.kind = kind
+    def __init__(
+        self, radiance: Radiance, kind: type[LobeMaps | Mips], side: int, sharpest: float
+    ) -> None:
+        self.kind, self.sharpest = kind, sharpest
         self.picture = make_latlong_picture(radiance, side)
         self.finest = make_finest_level(radiance, side)
         self.lock = threading.Lock()
@@ -53,7 +56,7 @@ class LightFiltering:
 
     @cached_property
     def _filtered(self) -> tuple[list[FloatArray], FloatArray]:
-        levels = self.kind.make_levels(self.finest, self.picture)
+        levels = self.kind.make_levels(self.finest, self.picture, self.sharpest)
         return levels, filter_irradiance(self.picture)
 
 

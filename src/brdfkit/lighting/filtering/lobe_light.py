@@ -9,6 +9,8 @@ of the diffuse part, and the lobes with their weights w, which are interpolated 
 [Ergun 2015, sections 8.3, 8.5, 8.6]
 """
 
+from math import inf
+
 import numpy as np
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitInt, JitMask, JitVector, MitsubaObject
@@ -56,6 +58,10 @@ class LobeLight:
                 here &= si.wi.z > 0
             total = dr.select(here, lobes.radiance(si, light, here), total)
         return make_rgb_emission()(total, si)
+
+    def find_sharpest_lobe(self, scene: MitsubaObject, sampler: MitsubaObject) -> float:
+        """Return the largest concentration κ of the lobes of light, which is not known."""
+        return inf
 
     def fit_lobes(self, bsdf: MitsubaObject) -> "ViewedLobes":
         """Fit lobes to a BSDF, in a few seconds; warn if it has a mirror or clear glass."""

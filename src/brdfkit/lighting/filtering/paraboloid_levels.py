@@ -16,7 +16,7 @@ from functools import lru_cache
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, FloatArray, JitFloat
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, JitFloat
 from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle_per_area
 from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_resolution
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
@@ -52,9 +52,18 @@ def texel_directions(side: int) -> FloatArray:
 
     The first picture is the hemisphere z ≥ 0, the second one z < 0.
     """
+    s, t = place_texels(side)
+    return np.stack([np.stack(from_disc(s, t, sign), axis=-1) for sign in (1, -1)])
+
+
+def place_texels(side: int) -> tuple[FloatArray, FloatArray]:
+    """Return the coordinates s and t (side, side) of the middles of a hemisphere's texels.
+
+    The disc has the radius 1.
+    """
     along = BORDER * ((np.arange(side) + 0.5) * 2 / side - 1)
     s, t = np.meshgrid(along, along)
-    return np.stack([np.stack(from_disc(s, t, sign), axis=-1) for sign in (1, -1)])
+    return s, t
 
 
 def make_mips(base: FloatArray) -> list[FloatArray]:
@@ -106,20 +115,25 @@ def sharpest_kappa(side: float) -> float:
     return (side / (4 * BORDER * TEXELS)) ** 2
 
 
-def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
+def convolve_with_lobes(
+    picture: FloatArray, side: float, sharpest: float = math.inf
+) -> list[FloatArray]:
     """Convolve an environment map with ever wider lobes, and return a level for each of them.
 
     `picture` (height, 2 height, channels) is by latitude and longitude. The concentration of the
     lobes begins with `sharpest_kappa(side)`, and falls by the factor `STEP` per level. A level has
-    the shape (hemispheres, texels, texels, channels). The last few results are kept, since most
-    previews have the same light.
+    the shape (hemispheres, texels, texels, channels). Levels that no look-up of a lobe needs whose
+    concentration is at most `sharpest` are 0. The last few results are kept, since most previews
+    have the same light.
     """
     pixels = np.asarray(picture, np.float32).tobytes()
-    return list(_convolve_with_lobes(pixels, picture.shape, side))
+    return list(_convolve_with_lobes(pixels, picture.shape, side, sharpest))
 
 
 @lru_cache(CACHED_PICTURES)
-def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> list[FloatArray]:
+def _convolve_with_lobes(
+    pixels: bytes, shape: tuple[int, ...], side: float, sharpest: float
+) -> list[FloatArray]:
     """Convolve a picture, given as bytes of float32 so that calls can be cached, with lobes.
 
     The levels are float32 as well: they are looked up in single precision.
@@ -127,6 +141,11 @@ def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> 
     picture: FloatArray = np.frombuffer(pixels, np.float32).reshape(shape).astype(float)
     kappa, levels = sharpest_kappa(side), []
     while kappa > SMALLEST_KAPPA:
+        texels = max(round(side), SMALLEST_SIDE)
+        if kappa > 1.01 * STEP * sharpest:  # all look-ups lie beyond the next level
+            levels.append(np.zeros((2, texels, texels, shape[2]), np.float32))
+            kappa, side = kappa / STEP, side / math.sqrt(STEP)
+            continue
         while len(picture) > ROWS * max(side, SMALLEST_SIDE):
             picture = halve_resolution(picture)
         sharper = (1 + BLUR) * kappa
@@ -137,26 +156,60 @@ def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> 
         filtered = convolve_on_sphere(
             picture, evaluate_lobe, math.acos(max(1 - CUT_OFF / kappa, -1))
         )
-        discs = resample_to_discs(filtered, max(round(side), SMALLEST_SIDE))
-        levels.append(discs.astype(np.float32))
+        levels.append(resample_to_discs(filtered, texels))
         kappa, side = kappa / STEP, side / math.sqrt(STEP)
     return levels
 
 
-def resample_to_discs(picture: FloatArray, side: int) -> FloatArray:
-    """Resample a `picture` by latitude and longitude to dual-paraboloid pictures.
+def resample_to_discs(picture: FloatArray, side: int) -> AnyArray:
+    """Resample a smooth `picture` by latitude and longitude to dual-paraboloid pictures.
 
-    The result has the shape (2, side, side, channels), with z ≥ 0 first, then z < 0.
+    The result has the shape (2, side, side, channels), with z ≥ 0 first, then z < 0. It is 0 in the
+    corners, which no look-up reads.
     """
-    from scipy.ndimage import map_coordinates
-
-    height, width = picture.shape[:2]
-    x, y, z = np.moveaxis(texel_directions(side), -1, 0)
-    around = 8  # pixels added beyond each edge; beyond a pole they show the opposite azimuth
-    half = np.roll(picture, width // 2, axis=1)
-    tall = np.concatenate([half[:around][::-1], picture, half[-around:][::-1]])
+    height, width, channels = picture.shape
+    # The hemisphere z < 0 is the upper hemisphere of the picture upside down
+    single = picture.astype(np.float32)
+    both = np.concatenate([single, single[::-1]], axis=-1)
+    around = 2  # pixels added beyond each edge; beyond a pole they show the opposite azimuth
+    half = np.roll(both, width // 2, axis=1)
+    tall = np.concatenate([half[:around][::-1], both, half[-around:][::-1]])
     wide = np.pad(tall, ((0, 0), (around, around), (0, 0)), mode="wrap")
+    s, t = place_texels(side)
+    # A look-up at the disc's rim reads texels whose middles are less than a diagonal outside
+    read = np.hypot(s, t) < 1 + 2 * math.sqrt(2) * BORDER / side
+    x, y, z = from_disc(s[read], t[read], 1)
     row = np.arccos(np.clip(z, -1, 1)) / np.pi * height - 0.5 + around
     column = np.arctan2(y, x) % (2 * np.pi) / (2 * np.pi) * width - 0.5 + around
-    bands = [map_coordinates(band, [row, column]) for band in np.moveaxis(wide, -1, 0)]
-    return np.stack(bands, axis=-1).clip(0)
+    discs = np.zeros((side, side, 2 * channels), np.float32)
+    discs[read] = _interpolate_cubically(wide, row, column).clip(0)
+    return np.moveaxis(discs.reshape(side, side, 2, channels), 2, 0)
+
+
+def _interpolate_cubically(picture: AnyArray, row: FloatArray, column: FloatArray) -> AnyArray:
+    """Interpolate a `picture` (height, width, channels) at places (n,) by Catmull-Rom splines.
+
+    There are at least two pixels around each place in every direction.
+    """
+    width, channels = picture.shape[1:]
+    pixels = picture.reshape(-1, channels)
+    (top, row_weights), (left, column_weights) = map(_weigh_four_pixels, (row, column))
+    total = np.zeros((len(row), channels), picture.dtype)
+    for i, along_rows in enumerate(row_weights):
+        for j, along_columns in enumerate(column_weights):
+            place = (top + i) * width + left + j
+            total += (along_rows * along_columns)[:, None] * pixels.take(place, axis=0)
+    return total
+
+
+def _weigh_four_pixels(place: FloatArray) -> tuple[IntArray, list[AnyArray]]:
+    """Return the first of the four pixels around each `place` (n,), and the weights of the four."""
+    second = np.floor(place)
+    t = (place - second).astype(np.float32)
+    weights = [
+        t * (t * (2 - t) - 1) / 2,
+        t * t * (1.5 * t - 2.5) + 1,
+        t * (t * (2 - 1.5 * t) + 0.5),
+        t * t * (t - 1) / 2,
+    ]
+    return second.astype(int) - 1, weights

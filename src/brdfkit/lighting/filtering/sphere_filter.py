@@ -9,9 +9,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 from brdfkit.core.geometry.latitude_rows import solid_angles
 
+# A kernel is cut off along a row only this much beyond its reach, where a kernel that is small but
+# not 0 has fallen so far that the cut adds no high frequencies
+MARGIN = 1.25
 NEGLIGIBLE = 1e-7  # frequencies weighted below this share of the largest weight are left out
 
 
@@ -45,28 +48,53 @@ def convolve_on_sphere(
     >>> convolve_on_sphere(np.ones((8, 16, 1)), uniform, np.pi)[0, 0, 0]
     np.float64(1.0)
     """
-    from scipy.fft import dct, irfft, rfft
-
     height, width = picture.shape[:2]
     theta, rows = row_polar_angles(height), int(np.ceil(reach / np.pi * height))
     sin, cos = np.sin(theta)[:, None], np.cos(theta)[:, None]
     # cosines of azimuth differences; half a turn suffices, as the kernel is symmetric
     turn = np.cos(np.arange(width // 2 + 1) * 2 * np.pi / width)
-    light = rfft(picture * solid_angles(height, width, at_poles=False)[:, None, None], axis=1)
-    # Real and imaginary parts side by side: the weights are real, and multiply both alike
-    light = light.view(float)
+    areas = solid_angles(height, width, at_poles=False)
+    light = np.fft.rfft(picture * areas[:, None, None], axis=1)
+    # Real and imaginary parts one after the other: the weights are real, and multiply both alike
+    light = np.concatenate([light.real, light.imag], axis=2).transpose(0, 2, 1).copy()
     convolved = np.zeros_like(light)
-    for i in range((height + 1) // 2):
+    for i, columns in enumerate(_count_columns(sin[: (height + 1) // 2, 0], reach, width)):
         near = slice(max(i - rows, 0), i + rows + 1)
-        cosines = cos[i] * cos[near] + sin[i] * sin[near] * turn
-        weights = dct(kernel(np.clip(cosines, -1, 1)), type=1, axis=1)
+        cosines = cos[i] * cos[near] + sin[i] * sin[near] * turn[:columns]
+        weights = _transform_symmetric_rows(kernel(np.clip(cosines, -1, 1)), width)
         largest = np.abs(weights).max(axis=0)
         kept = np.flatnonzero(largest > NEGLIGIBLE * largest.max())[-1] + 1
         # The row as far from the lower pole as row i is from the upper one has the same weights
         for way in (1, -1):
-            lit = light[::way][near, :kept]
-            convolved[::way][i, :kept] = np.einsum("jm,jmc->mc", weights[:, :kept], lit)
-    return irfft(convolved.view(complex), width, axis=1)
+            lit = light[::way][near, :, :kept]
+            convolved[::way][i, :, :kept] = np.einsum("jm,jcm->cm", weights[:, :kept], lit)
+    real, imaginary = np.split(convolved.transpose(0, 2, 1), 2, axis=2)
+    return np.fft.irfft(real + 1j * imaginary, width, axis=1)
+
+
+def _count_columns(sin: FloatArray, reach: float, width: int) -> IntArray:
+    """Return for rows with the sines `sin` (n,) of their polar angle how far a kernel spreads.
+
+    The result (n,) is a number of columns, those of half a turn at most. A kernel with the `reach`
+    [rad] reaches columns of less than this difference in azimuth on any row.
+    """
+    wide = MARGIN * reach
+    sine = np.sin(wide) / sin if wide < np.pi / 2 else np.ones_like(sin)
+    azimuths = np.where(sine < 1, np.arcsin(np.minimum(sine, 1)), np.pi)
+    return np.minimum(np.ceil(azimuths / (2 * np.pi) * width).astype(int), width // 2) + 1
+
+
+def _transform_symmetric_rows(values: FloatArray, width: int) -> FloatArray:
+    """Return the Fourier transforms (n, width/2 + 1), which are real, of rows that are symmetric.
+
+    `values` (n, columns) are the first pixels of the rows, up to half of the `width`; after these
+    the rows are 0.
+    """
+    rows = np.zeros((len(values), width))
+    columns = values.shape[1]
+    rows[:, :columns] = values
+    rows[:, width - columns + 1 :] = values[:, :0:-1]
+    return np.fft.rfft(rows, axis=1).real
 
 
 def halve_resolution(picture: FloatArray) -> FloatArray:

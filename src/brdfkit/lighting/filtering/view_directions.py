@@ -96,6 +96,10 @@ class ViewDirections:
             adjacent.append(dr.gather(mi.Vector4f, weights, row))
         return dr.ravel(_median(adjacent))
 
+    def find_sharpest_lobe(self) -> float:
+        """Return the largest concentration κ of all stored lobes."""
+        return float(np.array(self.lobes)[3::4].max())
+
     def find_nearest_view(self, wi: JitVector) -> tuple[JitInt, JitFloat]:
         """Return the number of the view that is nearest to the direction `wi` when it is turned.
 

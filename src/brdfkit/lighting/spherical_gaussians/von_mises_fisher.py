@@ -12,7 +12,6 @@ concentrations (...) broadcast.
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import exprel
 
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 
@@ -31,7 +30,13 @@ def density(x: FloatArray, mu: ArrayLike, kappa: ArrayLike) -> AnyArray:
 def log_density(cosine: ArrayLike, kappa: ArrayLike) -> AnyArray:
     """Return a lobe's log density (...) where the angle to its axis has this `cosine`."""
     cosine, kappa = np.asarray(cosine, float), np.asarray(kappa, float)
-    return kappa * (cosine - 1) - np.log(4 * np.pi * exprel(-2 * kappa))
+    return kappa * (cosine - 1) - np.log(4 * np.pi * _divide_expm1(-2 * kappa))
+
+
+def _divide_expm1(x: AnyArray) -> AnyArray:
+    """Return (e^x - 1) / x, and 1 where x is 0."""
+    is_zero = x == 0
+    return np.where(is_zero, 1.0, np.expm1(x) / np.where(is_zero, 1.0, x))
 
 
 def mean_cosine(kappa: ArrayLike) -> FloatArray:
