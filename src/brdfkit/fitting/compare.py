@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from contextlib import closing
 from dataclasses import dataclass
+from functools import cached_property
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
+from brdfkit.core.cluster import count_cluster_slots, require_result, run_tasks
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import STRONG
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import make_unique
+from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.settings import require_material_first
 from brdfkit.images.ball.pixels import Pixels
 from brdfkit.materials.measured import Measured
@@ -110,6 +115,8 @@ def compare(
     *,
     max_angle: float = 80.0,
     spectral: bool = False,
+    client: Any = None,
+    progress: Progress | None = None,
 ) -> Comparison:
     """Compare fits, models or other materials to a measured one: errors in all losses, and albedo.
 
@@ -125,6 +132,10 @@ def compare(
     spectral : bool, default False
         Whether to compare at the measured wavelengths instead of in linear sRGB. Then all `fits`
         must have the same wavelengths.
+    client : distributed.Client, optional
+        A cluster that compares in place of this process, a task for each of `fits`.
+    progress : callable, optional
+        Called with (BRDFs done, BRDFs in all).
 
     Returns
     -------
@@ -142,28 +153,74 @@ def compare(
     >>> print(compare("car_paint", ["ward", fit("car_paint", "ggx")]))    # doctest: +SKIP
     """
     require_material_first("compare(material, fits)", material)
+    if client is not None:
+        count_cluster_slots(client)
     data, materials = to_measured(material), to_materials(fits, NEEDED)
-    samples = select_samples(data, max_angle, spectral=spectral)
-    measured_albedo = (data if spectral else data.rgb).albedo
-    pixels = make_albedo_pixels(
-        ANGLES, ANISOTROPIC_AZIMUTHS if data.anisotropic else ISOTROPIC_AZIMUTHS
-    )
-    errors: dict[str, dict[str, float]] = {}
-    albedos: dict[str, tuple[float, ...]] = {}
+    reference = Reference(data, max_angle, spectral)
+    names: list[str] = []
     for thing in materials:
-        name = make_unique(thing.name, errors)
-        brdf: Any = thing if spectral else getattr(thing, "rgb", thing)
-        values = _evaluate_at_samples(brdf, data, samples)
-        errors[name] = {
-            loss: compute_error(losses.named.by_sample[loss], values, samples)
-            for loss in losses.named.by_sample
-        }
-        albedos[name] = _compute_albedos(brdf, pixels)
+        names.append(make_unique(thing.name, names))
+    found = _judge_all(reference, dict(zip(names, materials, strict=True)), client, progress)
+    errors = {name: found[name][0] for name in names}
+    albedos = {name: found[name][1] for name in names}
     errors = dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT]))
     shown = choose_losses_to_show(
         *(thing.loss_name for thing in materials if isinstance(thing, Fit))
     )
-    return Comparison(data.name, errors, albedos, measured_albedo.means, tuple(shown))
+    return Comparison(data.name, errors, albedos, reference.albedo, tuple(shown))
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """The measured material to which BRDFs are compared, as `compare` takes it.
+
+    Its samples are selected once, also in a worker of a cluster.
+    """
+
+    data: Measured
+    max_angle: float
+    spectral: bool
+
+    @cached_property
+    def samples(self) -> Samples:
+        """The samples at which BRDFs are compared."""
+        return select_samples(self.data, self.max_angle, spectral=self.spectral)
+
+    @property
+    def albedo(self) -> tuple[float, ...]:
+        """The albedos of the material at `ANGLES`."""
+        return (self.data if self.spectral else self.data.rgb).albedo.means
+
+    def judge_brdf(self, thing: Any) -> tuple[dict[str, float], tuple[float, ...]]:
+        """Return the errors of a BRDF by the name of the loss, and its albedos at `ANGLES`."""
+        brdf = thing if self.spectral else getattr(thing, "rgb", thing)
+        values = _evaluate_at_samples(brdf, self.data, self.samples)
+        named = losses.named.by_sample
+        errors = {loss: compute_error(named[loss], values, self.samples) for loss in named}
+        turned = ANISOTROPIC_AZIMUTHS if self.data.anisotropic else ISOTROPIC_AZIMUTHS
+        return errors, _compute_albedos(brdf, make_albedo_pixels(ANGLES, turned))
+
+
+def _judge_all(
+    reference: Reference, materials: Mapping[str, Any], client: Any, progress: Progress | None
+) -> dict[str, Any]:
+    """Return what `Reference.judge_brdf` returns of each of several BRDFs, by name."""
+    found: dict[str, Any] = {}
+    report = progress or (lambda done, total: None)
+    report(0, len(materials))
+    tasks = run_tasks(
+        _judge_named, list(materials.items()), client, shared=reference, describe=itemgetter(0)
+    )
+    with closing(tasks):
+        for (name, _), result in tasks:
+            found[name] = require_result(result)
+            report(len(found), len(materials))
+    return found
+
+
+def _judge_named(reference: Reference, task: tuple[str, Any]) -> Any:
+    """Return what `Reference.judge_brdf` returns of one BRDF, which is given with its name."""
+    return reference.judge_brdf(task[1])
 
 
 def _compute_albedos(brdf: Any, pixels: Pixels) -> tuple[float, ...]:

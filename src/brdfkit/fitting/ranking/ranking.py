@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Generator, Iterable
+from contextlib import closing
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.cluster import count_cluster_slots, run_tasks
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.ranking.appearance import Appearance
-from brdfkit.fitting.ranking.cross_validation import cross_validate
+from brdfkit.fitting.ranking.cross_validation import Validated, cross_validate
 from brdfkit.fitting.ranking.held_out import HeldOut
 from brdfkit.fitting.ranking.ranked import rank_results
 from brdfkit.fitting.ranking.result import Ranking
@@ -26,6 +28,8 @@ from brdfkit.regression.albedo import TargetAlbedo
 
 # Sums of two models that are ranked by default, because they fit best in docs/leaderboard.md
 SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
+# The arguments of `cross_validate` that all models share
+How: TypeAlias = tuple[HeldOut, Appearance, TargetAlbedo, bool | None, int]
 
 
 def rank(
@@ -37,6 +41,7 @@ def rank(
     anisotropic: bool | None = None,
     max_angle: float = 80.0,
     seed: int = 0,
+    client: Any = None,
     progress: Progress | None = None,
 ) -> Ranking:
     """Rank models by cross-validation on a measured material, and by pictures of their fits.
@@ -73,6 +78,9 @@ def rank(
         Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out.
     seed : int, default 0
         Seed of the folds, the drawn samples and the starts; equal seeds give equal rankings.
+    client : distributed.Client, optional
+        A cluster that fits in place of this process, a task for each model. The files of your own
+        models must have the same paths there.
     progress : callable, optional
         Called with (fits done, fits in all).
 
@@ -93,6 +101,8 @@ def rank(
     """
     began = time.perf_counter()
     require_material_first("rank(material, models)", material)
+    if client is not None:
+        count_cluster_slots(client)
     data, classes = to_measured(material), _find_model_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
     chosen = to_loss(loss)
@@ -103,28 +113,65 @@ def rank(
     held_out = HeldOut.divide(samples, chosen, data.anisotropic, folds, rng, pixels)
     appearance = Appearance(data, samples, max_angle, seed + 1)
     target = TargetAlbedo.from_measured(data.rgb.albedo, data.anisotropic)
-    how = appearance, target, anisotropic, seed
+    how = held_out, appearance, target, anisotropic, seed
 
     report, fits = progress or (lambda done, total: None), folds + 1
     results: dict[str, Any] = {}
     try:
-        for number, (label, model) in enumerate(classes.items()):
-
-            def report_model(done: int, before: int = number * fits) -> None:
-                """Report the finished fits of all models; `done` are those of this model."""
-                report(before + done, len(classes) * fits)
-
-            try:
-                results[label] = cross_validate(model, held_out, *how, report_model)
-            except BrdfkitError as error:
-                results[label] = error
+        with closing(_validate(classes, how, client, fits, report)) as validated:
+            for label, result in validated:
+                results[label] = result
     except KeyboardInterrupt:
         if not results:
             raise
     if all(isinstance(one, BrdfkitError) for one in results.values()):
         raise next(iter(results.values()))
-    rows = rank_results(results, held_out.sum_by_block(np.ones(len(held_out.blocks))))
+    ordered = {label: results[label] for label in classes if label in results}
+    rows = rank_results(ordered, held_out.sum_by_block(np.ones(len(held_out.blocks))))
     return Ranking(data.name, chosen.name, rows, len(classes), time.perf_counter() - began)
+
+
+def _validate(
+    classes: dict[str, type[Model]],
+    how: How,
+    client: Any,
+    fits: int,
+    report: Progress,
+) -> Generator[tuple[str, Any], None, None]:
+    """Yield (label, `Validated` or the error) for every model, as they are finished.
+
+    Each model takes `fits` fits, of which `report` is told. They run on the cluster of a `client`,
+    if there is one.
+    """
+    total = len(classes) * fits
+    if client is None:
+        for number, (label, model) in enumerate(classes.items()):
+
+            def report_fit(done: int, before: int = number * fits) -> None:
+                """Report the finished fits of all models; `done` are those of this model."""
+                report(before + done, total)
+
+            yield label, _validate_model(how, model(), report_fit)
+        return
+    report(0, total)
+    models = [model() for model in classes.values()]
+    tasks = run_tasks(_validate_model, models, client, shared=how, describe=lambda m: m.name)
+    with closing(tasks):
+        for number, (task, result) in enumerate(tasks):
+            if isinstance(result, Exception) and not isinstance(result, BrdfkitError):
+                raise result
+            yield task.name, result
+            report((number + 1) * fits, total)
+
+
+def _validate_model(
+    how: How, model: Model, report: Callable[[int], object] = lambda done: None
+) -> Validated | BrdfkitError:
+    """Cross-validate the class of a model, or return the reason why it cannot be fitted."""
+    try:
+        return cross_validate(type(model), *how, report)
+    except BrdfkitError as error:
+        return error
 
 
 def list_default_models() -> list[str]:

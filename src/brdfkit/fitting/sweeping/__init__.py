@@ -1,7 +1,7 @@
 """`sweep`: fits several models to many materials, in several processes or on a cluster.
 
 `planning.py` makes tasks from files, models and settings, and `tasks.py` carries out one task.
-`processes.py` runs tasks on this machine, `cluster.py` on a cluster. `judging.py` computes
+`processes.py` runs tasks on this machine, `core/cluster.py` on a cluster. `judging.py` computes
 held-out errors, `saved_fits.py` stores the finished fits in a folder, and `result.py` defines
 the result, which `tables.py` and `page.py` write.
 """

@@ -10,16 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.arguments import to_dictionary, to_whole_number
+from brdfkit.core.cluster import count_cluster_slots, run_tasks
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.settings import FitSettings, ModelLike, require_material_first
 from brdfkit.fitting.sweeping import saved_fits
-from brdfkit.fitting.sweeping.cluster import count_cluster_slots, run_on_cluster
 from brdfkit.fitting.sweeping.planning import plan_tasks, split_tasks
 from brdfkit.fitting.sweeping.processes import choose_worker_count, run_in_processes
 from brdfkit.fitting.sweeping.result import Row, Sweep
-from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failed_outcome
+from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, fit_task, make_failed_outcome
 from brdfkit.regression import Fit
 from brdfkit.regression.solvers.settings import require_plain_data
 
@@ -140,7 +140,23 @@ def _run_tasks(tasks: list[Task], slots: int, client: Any) -> Generator[Outcome,
         if task.failure:
             yield from fit_models(task)
     parts = split_tasks(readable, slots)
-    yield from run_in_processes(parts, slots) if client is None else run_on_cluster(parts, client)
+    yield from run_in_processes(parts, slots) if client is None else _fit_on_cluster(parts, client)
+
+
+def _fit_on_cluster(tasks: list[Task], client: Any) -> Iterator[Outcome]:
+    """Yield the outcomes of tasks as the cluster of a `client` finishes them."""
+    runs = run_tasks(
+        fit_task,
+        tasks,
+        client,
+        describe=lambda task: f"{task.file}: {', '.join(task.models)}",
+        divide=lambda task: [replace(task, models={n: f}) for n, f in task.models.items()],
+    )
+    with closing(runs):
+        for task, found in runs:
+            if isinstance(found, Exception):
+                found = [make_failed_outcome(task, label, found) for label in task.models]
+            yield from found
 
 
 def _find_saved_rows(task: Task, folder: Path | None) -> Iterator[tuple[tuple[str, str], Row]]:

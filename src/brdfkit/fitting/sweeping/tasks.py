@@ -85,6 +85,11 @@ def fit_models(task: Task) -> Iterator[Outcome]:
             yield make_failed_outcome(task, label, error)
 
 
+def fit_task(_shared: None, task: Task) -> list[Outcome]:
+    """Return the outcomes of a task; this is what the worker of a cluster calls."""
+    return list(fit_models(task))
+
+
 def make_failed_outcome(task: Task, label: str, error: Exception | str) -> Outcome:
     """Return the `Outcome` of a fit that ended with an error; its message names the file."""
     if isinstance(error, Exception) and not isinstance(error, BrdfkitError):
