@@ -307,7 +307,7 @@ def test_a_file_that_changes_meanwhile_fails(here):
     (task,) = plan_tasks("chalk.npz", "lambert", FitSettings.from_dictionary({}))
     Path("chalk.npz").write_bytes(Path("paint.npz").read_bytes())
     (outcome,) = fit_models(task)
-    assert outcome.failure == "chalk.npz: has changed since the sweep began; begin it again."
+    assert outcome.failure == "chalk.npz: has changed since the work began; begin it again."
     (outcome,) = fit_models(replace(task, version="0.0.9"))
     assert "the worker has brdfkit" in outcome.failure
 

@@ -11,10 +11,12 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, TypeVar
 from uuid import uuid4
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.files import compute_sha256, require_unchanged
 from brdfkit.core.jit.threads import in_turn, set_thread_count
 from brdfkit.core.version import __version__
 
@@ -27,19 +29,22 @@ WARNING = "distributed.admin.large-graph-warning-threshold"
 class Parcel:
     """An object in pickled form, for another process with the same version of brdfkit.
 
-    `data`: the pickle. `version`: the version of brdfkit that made it.
+    `data`: the pickle. `checksums`: SHA-256 of files that belong to it, by path. `version`: the
+    version of brdfkit that made it.
     """
 
     data: bytes
+    checksums: dict[str, str]
     version: str = __version__
 
     @classmethod
-    def pack(cls, content: Any) -> Parcel:
-        """Pickle `content`; raise `BrdfkitError` if that is impossible."""
+    def pack(cls, content: Any, files: Iterable[Path] = ()) -> Parcel:
+        """Pickle `content`, to which `files` belong; raise `BrdfkitError` if that is impossible."""
         import cloudpickle
 
+        checksums = {str(file): compute_sha256(file) for file in files}
         try:
-            return cls(cloudpickle.dumps(content))
+            return cls(cloudpickle.dumps(content), checksums)
         except Exception as error:  # an object may raise anything when it is pickled
             raise BrdfkitError(
                 f"client: this cannot be sent to a cluster ({error}); leave client out."
@@ -49,8 +54,8 @@ class Parcel:
     def open(self) -> Any:
         """Return the object, which is made at the first call only.
 
-        Raises `BrdfkitError` for another version of brdfkit, and if the file of a user's model is
-        missing here or has changed.
+        Raises `BrdfkitError` for another version of brdfkit, and if one of the files, or that of a
+        user's model, is missing here or has changed.
         """
         if self.version != __version__:
             raise BrdfkitError(
@@ -60,6 +65,7 @@ class Parcel:
         if "content" not in vars(self):
             import cloudpickle
 
+            require_unchanged(self.checksums)
             with warnings.catch_warnings():
                 warnings.filterwarnings("error", ".*has changed since the model")
                 try:
@@ -69,7 +75,7 @@ class Parcel:
         return self.content
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"data": self.data, "version": self.version}
+        return {name: value for name, value in vars(self).items() if name != "content"}
 
 
 def count_cluster_slots(client: Any) -> int:
@@ -95,14 +101,16 @@ def run_tasks(
     client: Any,
     *,
     shared: Any = None,
+    files: Iterable[Path] = (),
     describe: Callable[[T], str] = str,
     divide: Callable[[T], Iterable[T]] = lambda task: [task],
 ) -> Generator[tuple[T, Any], None, None]:
     """Yield (task, result) for all tasks, as soon as the cluster of a `client` has finished them.
 
     A result is what `function(shared, task)` returns in a worker, or the exception that it raises.
-    `function` belongs to a module; `describe` returns a task's name for messages. Without a client
-    the tasks run here, in their order, and exceptions are raised.
+    `function` belongs to a module; `files` are those that it reads, at the same absolute paths in
+    all workers; `describe` returns a task's name for messages. Without a client the tasks run here,
+    in their order, and exceptions are raised.
 
     If a worker dies, another one repeats its tasks, as often as the cluster allows. The cluster
     counts this for every task of a dead worker, although only one of them killed it. So a task that
@@ -126,7 +134,7 @@ def run_tasks(
             return client.submit(_call_on_worker, function, kept, parcel, key=key)
 
     with dask.config.set({WARNING: "1 TB"}):
-        kept = client.submit(_return_parcel, Parcel.pack(shared), key=(f"shared-{run}", ""))
+        kept = client.submit(_return_parcel, Parcel.pack(shared, files), key=(f"shared-{run}", ""))
     waiting = {submit(task, f"{i}: {describe(task)}"): task for i, task in enumerate(tasks)}
     suspects: list[T] = []
     try:

@@ -1,7 +1,7 @@
 """Writes files whole or not at all, and reads them up to a size limit, unpacked if needed."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
@@ -163,6 +163,13 @@ def compute_sha256(path: str | os.PathLike[str]) -> str:
     path = require_file(path)
     with _translate_read_errors(path), path.open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def require_unchanged(checksums: Mapping[str, str]) -> None:
+    """Raise `BrdfkitError` if a file has changed; `checksums` are the expected SHA-256 by path."""
+    for path, checksum in checksums.items():
+        if compute_sha256(path) != checksum:
+            raise BrdfkitError(f"{path}: has changed since the work began; begin it again.")
 
 
 @contextmanager

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit.core.array_types import MitsubaObject
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.images.errors.noise import Accumulated
 
@@ -38,6 +40,8 @@ class Progressive:
     """
 
     def __init__(self, scenes: Mapping[str, Any], seed: int = 0) -> None:
+        if seed >= 2**31:
+            raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
         self.scenes, self.seed = dict(scenes), seed
         self.reset()
 
@@ -50,13 +54,7 @@ class Progressive:
 
         The pass is not in the picture until `integrate` adds it.
         """
-        import mitsuba as mi
-
-        seed = mi.UInt32(derive_seed(self.seed, self.accumulated[name].passes))
-        scene = self.scenes[name]
-        # So that Ctrl-C arrives as KeyboardInterrupt, not in a RuntimeError of mi.render
-        with raise_first_cause():
-            return to_rgb(scene.integrator().render(scene, seed=seed, spp=spp))
+        return render_pass(self.scenes[name], self.seed, self.accumulated[name].passes, spp)
 
     def pictures(self) -> dict[str, NDArray[np.float32]]:
         """Return the pictures (height, width, 3) by scene name; none before the first pass."""
@@ -67,6 +65,16 @@ class Progressive:
         self.accumulated = {
             name: before.add_pass(generated[name], spp) for name, before in self.accumulated.items()
         }
+
+
+def render_pass(scene: MitsubaObject, seed: int, number: int, spp: int) -> NDArray[np.float32]:
+    """Render pass `number`, from 0, of a scene, as (height, width, 3), with a `seed` for all."""
+    import mitsuba as mi
+
+    own = mi.UInt32(derive_seed(seed, number))
+    # So that Ctrl-C arrives as KeyboardInterrupt, not in a RuntimeError of mi.render
+    with raise_first_cause():
+        return to_rgb(scene.integrator().render(scene, seed=own, spp=spp))
 
 
 def derive_seed(seed: int, number: int) -> int:

@@ -7,6 +7,7 @@ picture once, so that after Ctrl-C all pictures have the same number of samples.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from types import FunctionType
 from typing import Any, TypeAlias
@@ -15,13 +16,11 @@ import numpy as np
 
 from brdfkit.core.arguments import to_positive_number, to_whole_number
 from brdfkit.core.array_types import AnyArray, BoolArray
+from brdfkit.core.cluster import count_cluster_slots
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.distance_fields import Node, from_function
-from brdfkit.materials.resolve import Material
-from brdfkit.mitsuba_bridge.scene_file import load_scene_file
-from brdfkit.rendering.evidence import find_picture_evidence
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input import field
 from brdfkit.rendering.scene_input.arguments import (
@@ -31,10 +30,10 @@ from brdfkit.rendering.scene_input.arguments import (
     load_named_materials,
     to_material_list,
 )
-from brdfkit.rendering.scene_input.loading import SIZE, load_scenes
+from brdfkit.rendering.scene_input.loading import SIZE
+from brdfkit.rendering.shown import Loaded, Shown, ShownField, ShownFile, ShownMaterials
 from brdfkit.rendering.tracing import Traced, trace_scenes
 
-SPP = 256  # default number of samples per pixel
 MOST_SPP = 16_384  # default limit of the samples per pixel if a noise floor is requested
 Scene: TypeAlias = Callable[[dict[str, Any], tuple[int, int]], dict[str, Any]]
 SceneLike: TypeAlias = str | Path | Scene
@@ -51,6 +50,7 @@ def render(
     environment: str | Path | None = None,
     noise_floor: float | None = None,
     seed: int = 0,
+    client: Any = None,
     progress: PictureProgress | None = None,
 ) -> Rendering:
     """Path-trace one or several materials in the same scene, with the same samples.
@@ -89,6 +89,9 @@ def render(
     seed : int, default 0
         Seed of the samples; equal seeds give equal pictures, up to the order in which threads sum
         up (1e-6).
+    client : distributed.Client, optional
+        A cluster that renders in place of this process: its workers share the samples. Files of
+        scenes, environment maps and plugins must have the same paths there.
     progress : callable, optional
         Called with (done, total) after each pass of a picture; with `noise_floor`, the total is an
         estimate that improves. A function with a parameter `pictures` also gets a function:
@@ -118,24 +121,73 @@ def render(
         materials = from_function(materials)
     file, is_field = _find_scene_file(materials), isinstance(materials, Node)
     if (file or is_field) and (scene != "ball" or environment is not None or (file and size)):
-        shown = f"{file} is a scene file" if file else "A distance field is shown by itself"
+        what = f"{file} is a scene file" if file else "A distance field is shown by itself"
         own = "scene, environment and size" if file else "scene and environment"
-        raise BrdfkitError(f"{shown}: leave {own} out.")
+        raise BrdfkitError(f"{what}: leave {own} out.")
     seed = to_whole_number("seed", seed, least=0)
-    if file:
-        return _render_scene_file(file, spp, seed, progress, noise_floor)
-    spp = _to_sample_count(spp, field.SPP if is_field else SPP, noise_floor)
+    spp = _check_sample_count(spp, noise_floor)
     size = None if size is None else to_picture_size(size)
-    if isinstance(materials, Node):
-        return _render_field(materials, spp, size or field.SIZE, seed, progress, noise_floor)
-    subjects = to_material_list(materials)
-    require_memory(size or SIZE, len(subjects))
-    load_mitsuba()  # it sets Mitsuba's variant, on which the dictionaries of BSDFs below depend
-    named = load_named_materials(subjects)
-    where = scene, size, environment
-    traced, mask, evidence = _load_and_trace_scenes(named, where, spp, seed, progress, noise_floor)
-    parameters = collect_parameters(named)
-    return to_rendering(traced, seed, noise_floor, parameters, mask, evidence)
+    if client is not None:
+        count_cluster_slots(client)
+    parameters: dict[str, dict[str, Any]] = {}
+    shown: Shown
+    if file:
+        shown = ShownFile(file)
+    elif isinstance(materials, Node):
+        shown = ShownField(materials, size or field.SIZE)
+    else:
+        subjects = to_material_list(materials)
+        require_memory(size or SIZE, len(subjects))
+        load_mitsuba()  # it sets Mitsuba's variant, on which the dictionaries of BSDFs depend
+        named = load_named_materials(subjects)
+        shown = ShownMaterials(named, scene, size, environment)
+        parameters = collect_parameters(named)
+    trace = _trace_here if client is None else partial(_trace_on_cluster, client)
+    traced, loaded = trace(shown, spp, seed, progress, noise_floor)
+    return to_rendering(traced, seed, noise_floor, parameters, loaded.mask, loaded.evidence)
+
+
+@in_turn
+def _trace_here(
+    shown: Shown,
+    spp: int | None,
+    seed: int,
+    progress: PictureProgress | None,
+    noise_floor: float | None,
+) -> tuple[Traced, Loaded]:
+    """Load scenes and path-trace them; return the pictures, and what was loaded with them.
+
+    The scenes are freed when this function returns, before another thread renders.
+    """
+    load_mitsuba()
+    loaded = shown.load()
+    traced = trace_scenes(
+        loaded.scenes, spp or loaded.spp, seed, progress, noise_floor, loaded.mask
+    )
+    return traced, loaded.without_scenes()
+
+
+@in_turn
+def _load_here(shown: Shown) -> Loaded:
+    """Load scenes, to find what is wrong with them, and return what is loaded without them."""
+    load_mitsuba()
+    return shown.load().without_scenes()
+
+
+def _trace_on_cluster(
+    client: Any,
+    shown: Shown,
+    spp: int | None,
+    seed: int,
+    progress: PictureProgress | None,
+    noise_floor: float | None,
+) -> tuple[Traced, Loaded]:
+    """Path-trace scenes on the cluster of a `client`; otherwise as `_trace_here`."""
+    from brdfkit.rendering.on_cluster import trace_on_cluster
+
+    loaded = _load_here(shown)
+    spp = spp or loaded.spp
+    return trace_on_cluster(shown, loaded, spp, seed, progress, noise_floor, client), loaded
 
 
 def _find_scene_file(materials: object) -> Path | None:
@@ -151,23 +203,6 @@ def _find_scene_file(materials: object) -> Path | None:
     return files[0] if files else None
 
 
-@in_turn
-def _render_scene_file(
-    path: Path,
-    spp: int | None,
-    seed: int,
-    progress: PictureProgress | None,
-    noise_floor: float | None,
-) -> Rendering:
-    """Render a Mitsuba scene file with its own camera and integrator."""
-    load_mitsuba()
-    scene = load_scene_file(path)
-    require_memory(scene.sensors()[0].film().size(), 1, path)
-    spp = _to_sample_count(spp, scene.sensors()[0].sampler().sample_count(), noise_floor)
-    traced = trace_scenes({path.stem: scene}, spp, seed, progress, noise_floor)
-    return to_rendering(traced, seed, noise_floor)
-
-
 def to_picture_size(size: int | tuple[int, int]) -> tuple[int, int]:
     """Return (width, height) from a side or a pair; raise `BrdfkitError` for invalid sizes."""
     sides = (size, size) if isinstance(size, int | np.integer) else size
@@ -180,15 +215,14 @@ def to_picture_size(size: int | tuple[int, int]) -> tuple[int, int]:
     return width, height
 
 
-def _to_sample_count(spp: int | None, default: int, noise_floor: float | None) -> int:
-    """Check the user's `spp`; return the samples per pixel, or their limit with a `noise_floor`.
+def _check_sample_count(spp: int | None, noise_floor: float | None) -> int | None:
+    """Check the user's `spp`; with a `noise_floor`, return the limit of the samples per pixel.
 
-    Without a `noise_floor`, a `spp` of None gives the `default`. The limit is at least 2, because
-    the noise cannot be estimated from one sample.
+    The limit is at least 2, because the noise cannot be estimated from one sample.
     """
-    if noise_floor is None:
-        return to_whole_number("spp", default if spp is None else spp, least=1)
-    return to_whole_number("spp", MOST_SPP if spp is None else spp, least=2)
+    if noise_floor is not None:
+        return to_whole_number("spp", MOST_SPP if spp is None else spp, least=2)
+    return None if spp is None else to_whole_number("spp", spp, least=1)
 
 
 def to_rendering(
@@ -213,48 +247,3 @@ def to_rendering(
         standard_error=traced.first.standard_error,
         evidence=evidence or {},
     )
-
-
-@in_turn
-def _render_field(
-    node: Node,
-    spp: int,
-    size: tuple[int, int],
-    seed: int,
-    progress: PictureProgress | None,
-    noise_floor: float | None,
-) -> Rendering:
-    """Render a distance field, the graph of its `node`; return the `Rendering`.
-
-    The scene is freed when this function returns, before another thread renders.
-    """
-    require_memory(size, 1)
-    load_mitsuba()
-    traced = trace_scenes(
-        {"field": field.load_field_scene(node, size)}, spp, seed, progress, noise_floor
-    )
-    return to_rendering(traced, seed, noise_floor)
-
-
-@in_turn
-def _load_and_trace_scenes(
-    materials: dict[str, Material],
-    where: tuple[SceneLike, tuple[int, int] | None, str | Path | None],
-    spp: int,
-    seed: int,
-    progress: PictureProgress | None,
-    noise_floor: float | None,
-) -> tuple[Traced, BoolArray | None, dict[str, AnyArray]]:
-    """Path-trace `materials` by name; return the pictures, the mask and the evidence.
-
-    The mask is True in the pixels that show the material, and the evidence is what
-    `find_picture_evidence` tells of them. `where` is (scene, size, environment).
-    The scenes must be freed when this function returns, before another thread renders: kernels of
-    Mitsuba call the BSDFs of all scenes in the process, and would call one that is being freed.
-    """
-    described = {name: material.scene_dict() for name, material in materials.items()}
-    loaded, mask = load_scenes(described, *where)
-    first = next(iter(loaded.values()))
-    require_memory(first.sensors()[0].film().size(), len(loaded))
-    evidence = find_picture_evidence(materials, first, mask)
-    return trace_scenes(loaded, spp, seed, progress, noise_floor, mask), mask, evidence

@@ -5,7 +5,8 @@ from __future__ import annotations
 import inspect
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import isqrt
@@ -15,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.array_types import BoolArray, MitsubaObject
-from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated, Halves, estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering.progressive import Progressive
@@ -65,43 +65,71 @@ def trace_scenes(
     pass. If it has a parameter `pictures`, it also receives a function that returns the pictures so
     far.
     """
-    if seed >= 2**31:
-        raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
-    start = time.perf_counter()
-    pixels = max(int(np.prod(s.sensors()[0].film().crop_size())) for s in loaded.values())
-    passes = list(
-        divide_into_passes(spp, max(1, min(most or PASS, RAYS // pixels, (spp + 1) // 2)))
+    pixels = max(map(count_pixels, loaded.values()))
+    passes, growing = plan_passes(spp, pixels, most), Progressive(loaded, seed)
+    pictures = (
+        (number, name, growing.generate(name, count))
+        for number, count in enumerate(passes)
+        for name in loaded
     )
-    growing, reference = Progressive(loaded, seed), next(iter(loaded))
-    expected, keywords = len(passes), _find_progress_arguments(progress, growing)
+    return accumulate_passes(growing, passes, pictures, progress, noise_floor, mask, limit)
+
+
+def count_pixels(scene: MitsubaObject) -> int:
+    """Return the number of pixels of a scene's picture."""
+    return int(np.prod(scene.sensors()[0].film().crop_size()))
+
+
+def plan_passes(spp: int, pixels: int, most: int | None = None) -> list[int]:
+    """Return the samples per pixel of each pass of a picture with a number of `pixels`.
+
+    They are `spp` in all; `most` is as in `trace_scenes`.
+    """
+    return list(divide_into_passes(spp, max(1, min(most or PASS, RAYS // pixels, (spp + 1) // 2))))
+
+
+def accumulate_passes(
+    growing: Progressive,
+    passes: Sequence[int],
+    pictures: Iterable[tuple[int, str, NDArray[np.float32]]],
+    progress: Callable[..., object] | None,
+    noise_floor: float | None = None,
+    mask: BoolArray | None = None,
+    limit: float | None = None,
+) -> Traced:
+    """Add up `pictures`, each given as (number of the pass, name, picture), to those of `growing`.
+
+    They may come in any order, but a pass is added when all earlier ones are, so that the result
+    does not depend on it. `passes` are the samples per pixel of each. The other arguments, and what
+    happens after Ctrl-C, are those of `trace_scenes`.
+    """
+    start = time.perf_counter()
+    reference, names = next(iter(growing.accumulated)), len(growing.accumulated)
+    arrived: dict[int, dict[str, NDArray[np.float32]]] = defaultdict(dict)
+    finished, expected = 0, len(passes)
+    keywords = _find_progress_arguments(progress, growing)
     try:
-        for number, count in enumerate(passes):
-            generated: dict[str, NDArray[np.float32]] = {}
-            for name in loaded:
-                generated[name] = growing.generate(name, count)
-                if len(generated) == len(loaded):
-                    growing.integrate(generated, count)
-                    halves = growing.accumulated[reference].halves
-                    expected = min(
-                        _estimate_passes_to_noise_floor(
-                            passes, number + 1, halves, noise_floor, mask
-                        ),
-                        _estimate_passes_within_time(
-                            limit, time.perf_counter() - start, number + 1
-                        ),
-                    )
-                if progress:
-                    done = number * len(loaded) + len(generated)
-                    progress(done, expected * len(loaded), **keywords)
-            if number + 1 == expected:
+        for done, (number, name, picture) in enumerate(pictures, start=1):
+            arrived[number][name] = picture
+            while finished < expected and len(arrived[finished]) == names:
+                growing.integrate(arrived.pop(finished), passes[finished])
+                finished += 1
+                halves = growing.accumulated[reference].halves
+                seconds = time.perf_counter() - start
+                expected = min(
+                    _estimate_passes_to_noise_floor(passes, finished, halves, noise_floor, mask),
+                    _estimate_passes_within_time(limit, seconds, finished),
+                )
+            if progress:
+                progress(min(done, expected * names), expected * names, **keywords)
+            if finished == expected:
                 break
     except KeyboardInterrupt:
-        if not growing.accumulated[reference].passes:
+        if not finished:
             raise
 
-    pictures = growing.pictures()
     first, requested = growing.accumulated[reference], sum(passes[:expected])
-    return Traced(pictures, first, first.spp, requested, time.perf_counter() - start)
+    return Traced(growing.pictures(), first, first.spp, requested, time.perf_counter() - start)
 
 
 def _find_progress_arguments(

@@ -2,7 +2,7 @@
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,7 @@ class Picture:
     """A figure on the page.
 
     name : the name of its file without the suffix.
-    figure : the figure of matplotlib.
+    figure : the figure of matplotlib, or the bytes of its PNG.
     caption : Markdown below the figure.
     """
 
@@ -54,6 +54,12 @@ class Section:
     pictures: Sequence[Picture] = ()
 
 
+def encode_pictures(section: Section) -> Section:
+    """Return a section with PNGs in place of its figures, which can be sent to other processes."""
+    pictures = [replace(one, figure=_encode_small_png(one.figure)) for one in section.pictures]
+    return replace(section, pictures=pictures)
+
+
 def write_page(
     file: str | Path,
     title: str,
@@ -70,7 +76,8 @@ def write_page(
     paths = {picture.name: _make_picture_path(file, picture) for picture in pictures}
     for picture in pictures:
         with write_safely(paths[picture.name]) as beside:
-            beside.write_bytes(_encode_small_png(picture.figure))
+            figure = picture.figure
+            beside.write_bytes(figure if isinstance(figure, bytes) else _encode_small_png(figure))
     with write_safely(file) as beside:
         beside.write_text(
             _format_page(file, title, introduction, sections, missing), encoding="utf-8"

@@ -5,17 +5,22 @@ from __future__ import annotations
 import importlib
 import pkgutil
 import sys
+from collections.abc import Generator, Mapping
+from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
+from brdfkit.core.cluster import count_cluster_slots, require_result, run_tasks
 from brdfkit.core.documents import Document, Shown, Table
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.progress_bar import Progress
 from brdfkit.theses.claims import Claim, describe_counts
-from brdfkit.theses.page import write_page
+from brdfkit.theses.page import Section, encode_pictures, write_page
 from brdfkit.theses.sources import Sources, find_sources
 
 
@@ -65,6 +70,7 @@ def reproduce(
     data: str | Path | None = None,
     tables: str | Path | None = None,
     parts: list[str] | None = None,
+    client: Any = None,
     progress: Progress | None = None,
 ) -> Reproduction:
     """Check the claims of a thesis by running them, and write the results as a page.
@@ -85,6 +91,9 @@ def reproduce(
         that need one are not run where it is missing.
     parts : list of str, optional
         Only these parts, such as ``["table_9_1"]``; by default all.
+    client : distributed.Client, optional
+        A cluster that checks the parts in place of this process, a task for each part. The folders
+        must have the same paths there.
     progress : callable, optional
         Called with (done, total) as the claims are run.
 
@@ -104,6 +113,8 @@ def reproduce(
     """
     if name not in list_theses():
         raise no_such_error("thesis", name, list_theses())
+    if client is not None:
+        count_cluster_slots(client)
     thesis = _import_thesis(name)
     for part in parts or ():
         if part not in thesis.PARTS:
@@ -115,24 +126,65 @@ def reproduce(
         require_writable(Path(path) / f"{name}.md")
 
     chosen = [part for part in thesis.PARTS if parts is None or part in parts]
-    modules = [importlib.import_module(f"{thesis.__name__}.{part}") for part in chosen]
-    total, sections, written = sum(m.SECONDS for m in modules), [], []
+    seconds = {part: _import_part(name, part).SECONDS for part in chosen}
     report = progress or (lambda done, total: None)
+    check = _check_here if client is None else partial(_check_on_cluster, client)
+    sections: dict[str, Section] = {}
     try:
-        for number, module in enumerate(modules):
-            before = sum(m.SECONDS for m in modules[:number])
-            report(before, total)
-            sections.append(
-                module.check_claims(sources, _scale_progress(report, before, module.SECONDS, total))
-            )
+        with closing(check(name, sources, seconds, report)) as checked:
+            for part, section in checked:
+                sections[part] = section
     except KeyboardInterrupt:
         if not sections:
             raise
+    done = [sections[part] for part in chosen if part in sections]
+    left, written = [part for part in chosen if part not in sections], []
     if path is not None:
-        page, left = Path(path) / f"{name}.md", chosen[len(sections) :]
-        written = write_page(page, thesis.TITLE, thesis.INTRODUCTION, sections, left)
-    claims = tuple(claim for section in sections for claim in section.claims)
-    return Reproduction(name, claims, tuple(written), tuple(chosen[len(sections) :]))
+        page = Path(path) / f"{name}.md"
+        written = write_page(page, thesis.TITLE, thesis.INTRODUCTION, done, left)
+    claims = tuple(claim for section in done for claim in section.claims)
+    return Reproduction(name, claims, tuple(written), tuple(left))
+
+
+def _check_here(
+    name: str, sources: Sources, seconds: Mapping[str, int], report: Progress
+) -> Generator[tuple[str, Section], None, None]:
+    """Yield each part of a thesis and its section; `seconds` are about how long the parts take."""
+    before, total = 0, sum(seconds.values())
+    for part, own in seconds.items():
+        report(before, total)
+        own_report = _scale_progress(report, before, own, total)
+        yield part, _import_part(name, part).check_claims(sources, own_report)
+        before += own
+
+
+def _check_on_cluster(
+    client: Any, name: str, sources: Sources, seconds: Mapping[str, int], report: Progress
+) -> Generator[tuple[str, Section], None, None]:
+    """Yield each part of a thesis and its section, as the cluster of a `client` finishes them.
+
+    The longest parts begin first, so that none is left alone at the end.
+    """
+    parts = sorted(seconds, key=seconds.__getitem__, reverse=True)
+    done, total = 0, sum(seconds.values())
+    report(done, total)
+    with closing(run_tasks(_check_part, parts, client, shared=(name, sources))) as results:
+        for part, result in results:
+            yield part, require_result(result)
+            done += seconds[part]
+            report(done, total)
+
+
+def _check_part(shared: tuple[str, Sources], part: str) -> Section:
+    """Check the claims of a part of a thesis; `shared` are the thesis's name and its files."""
+    name, sources = shared
+    checked = _import_part(name, part).check_claims(sources, lambda done, total: None)
+    return encode_pictures(checked)
+
+
+def _import_part(name: str, part: str) -> ModuleType:
+    """Import a part of a thesis."""
+    return importlib.import_module(f"{_import_thesis(name).__name__}.{part}")
 
 
 def _require_packages(thesis: ModuleType, sources: Sources) -> None:

@@ -51,7 +51,7 @@ def find_sources(
     """
     named = data or os.environ.get(VARIABLE)
     if not named and not needs:
-        return Sources(None, Path(tables) if tables else None)
+        return Sources(None, Path(tables).absolute() if tables else None)
     if not named:
         raise BrdfkitError(
             f"No folder of measurements is named: set {VARIABLE} to one, or give --data FOLDER; "
@@ -64,4 +64,5 @@ def find_sources(
                 f"{folder / name}: is not there; fetch {origin}, and put it there, or name another "
                 f"folder by --data or {VARIABLE}."
             )
-    return Sources(folder, Path(tables) if tables else folder.resolve().parent / "thesis")
+    beside = Path(tables).absolute() if tables else folder.resolve().parent / "thesis"
+    return Sources(folder.absolute(), beside)

@@ -71,6 +71,11 @@ def find_plugin_kind(name: str) -> str | None:
     return next((kind for kind in KINDS if name in find_plugins(kind)), None)
 
 
+def list_users_files() -> tuple[Path, ...]:
+    """Return the files of the plugins that the user has added."""
+    return tuple(source for _, source in _users.values() if isinstance(source, Path))
+
+
 def add_plugins(kind: str, added: Mapping[str, Path | type]) -> None:
     """Add a user's plugins of a kind, files or classes by name.
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import compute_sha256
+from brdfkit.core.files import require_unchanged
 from brdfkit.core.version import __version__
 from brdfkit.fitting.fit import fit
 from brdfkit.fitting.settings import FitSettings
@@ -73,7 +73,7 @@ def fit_models(task: Task) -> Iterator[Outcome]:
         return
     for label, files in task.models.items():
         try:
-            _require_unchanged_files(files)
+            require_unchanged(files)
             for path in files:
                 labels.load_model_file(path)
             stream = io.BytesIO()
@@ -109,12 +109,5 @@ def _read_measurement(task: Task) -> Measured:
         raise BrdfkitError(
             f"the worker has brdfkit {__version__} and the sweep {task.version}; install the same."
         )
-    _require_unchanged_files(task.checksums)
+    require_unchanged(task.checksums)
     return to_measured(load(task.path))
-
-
-def _require_unchanged_files(checksums: dict[str, str]) -> None:
-    """Raise `BrdfkitError` if a file has changed; `checksums` are the expected SHA-256 by path."""
-    for path, checksum in checksums.items():
-        if compute_sha256(path) != checksum:
-            raise BrdfkitError(f"{path}: has changed since the sweep began; begin it again.")
