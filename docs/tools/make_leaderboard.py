@@ -2,8 +2,9 @@
 
     BRDFKIT_DATA=FOLDER python docs/tools/make_leaderboard.py --cache CACHE  # 15 minutes
 
-FOLDER contains third-party measurements. CACHE stores each fit as soon as it is finished, so that
-the same command continues an interrupted run. The page is written again after each sweep. The
+FOLDER contains third-party measurements. With --scheduler ADDRESS, the workers of a Dask cluster
+fit; both folders need the same paths there. CACHE stores each fit as soon as it is finished, so
+that the same command continues an interrupted run. The page is written again after each sweep. The
 errors are computed by `leaderboard/truth.py`, and the text is in `leaderboard/page.py`.
 """
 
@@ -21,6 +22,7 @@ from leaderboard.page import write_page
 from leaderboard.truth import MAX_ANGLE, PAIRS, Truth
 
 import brdfkit as bk
+from brdfkit.cli.cluster import connect_client
 from brdfkit.core.files import compute_sha256, write_safely
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
@@ -83,17 +85,20 @@ def make_reconstructions(networks, cache, shape, names=None):
     return files
 
 
-def run_sweep(files, models, loss, output, workers):
-    """Fit some models to some files, and return the finished sweep; `output` stores each fit."""
+def run_sweep(files, models, loss, output, given):
+    """Fit some models to some files, and return the finished sweep; `output` stores each fit.
+
+    `given` are the arguments of the command line, with `workers` and `scheduler`.
+    """
 
     def show_progress(done, total):
         """Print the number of finished fits."""
         print(f"{output.name}: {done} of {total} fits", end="\r", file=sys.stderr)
 
     settings = {"loss": loss, "seed": SEED, "max_angle": MAX_ANGLE}
-    found = bk.sweep(
-        files, models, settings=settings, folder=output, workers=workers, progress=show_progress
-    )
+    with connect_client(given.scheduler) as client:
+        where = {"workers": given.workers, "client": client, "folder": output}
+        found = bk.sweep(files, models, settings=settings, progress=show_progress, **where)
     print(f"{output.name}: {found.summary}", *found.problems, sep="\n", file=sys.stderr)
     if len(found.rows) < found.requested:
         sys.exit("interrupted; the same command goes on from there.")
@@ -193,6 +198,7 @@ def read_arguments(description):
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     parser.add_argument("--cache", type=Path, required=True, help="folder for the fits")
     parser.add_argument("--workers", type=int, help="processes; default: one for each core")
+    parser.add_argument("--scheduler", help="address of a Dask cluster that fits instead")
     given = parser.parse_args()
     folder = os.environ.get("BRDFKIT_DATA")
     if not folder:
@@ -215,13 +221,13 @@ def main():
     scores, full, restarts, seconds = [], [], [], {}
     timed = next(file for file in files[MERL] if file.stem == FEW[0])
     for collection, loss, models in list_sweeps():
-        rows = run_sweep(files[collection], models, loss, given.cache / loss, given.workers).rows
+        rows = run_sweep(files[collection], models, loss, given.cache / loss, given).rows
         scores += compute_scores(rows, collection, networks, kept)
         seconds |= time_fits(timed, models, kept)
         write_page(scores, seconds, full, restarts, facts)
     # A few materials in full, and from random starts
     few = make_reconstructions(networks, given.cache, FULL, FEW)
-    rows = run_sweep(few, SOME, "log", given.cache / "full", given.workers).rows
+    rows = run_sweep(few, SOME, "log", given.cache / "full", given).rows
     full += compute_scores(rows, MERL, networks, kept)
     for file in make_reconstructions(networks, given.cache, COARSE, FEW):
         for model in SOME:

@@ -53,7 +53,7 @@ def main():
 
     rows = []
     for loss in LOSSES:
-        found = run_sweep(files, MODELS, loss, given.cache / loss, given.workers).rows
+        found = run_sweep(files, MODELS, loss, given.cache / loss, given).rows
         for number, file in enumerate(files, 1):
             fits = [row.fit for row in found if row.material == file.stem and row.fit]
             looks = compute_picture_errors(file, fits, kept)

@@ -1,4 +1,4 @@
-"""Sweeps: many materials in several processes and on a cluster, past what fails, and resumed."""
+"""Sweeps: many materials in several processes, past what fails, and resumed."""
 
 import csv
 import functools
@@ -10,7 +10,6 @@ import pickle
 import signal
 import subprocess
 import sys
-import threading
 import time
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -554,90 +553,3 @@ def test_the_command_refuses_in_one_sentence(cli, fitted, words, said):
     assert result.stderr.count("\n") == 1
     assert said in result.stderr
     assert not Path("new").exists()
-
-
-# On a cluster
-
-WAITS = FELT.replace("Felt", "Waits").replace(
-    "        return",
-    """        if multiprocessing.parent_process() and not BEGAN.exists():
-            BEGAN.write_text(str(os.getpid()))
-            time.sleep(60)
-        return""",
-)
-BEGAN = """
-import multiprocessing
-import os
-import time
-from pathlib import Path
-
-BEGAN = Path(__file__).with_name("began")
-"""
-
-
-@pytest.fixture
-def client(request):
-    """A client of a cluster of processes on this machine; the parameter: how many workers, and how
-    many of them may die of a task."""
-    dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
-    workers, deaths = request.param
-    options = {"n_workers": workers, "threads_per_worker": 1, "processes": True}
-    with (
-        dask.config.set({"distributed.scheduler.allowed-failures": deaths}),
-        distributed.LocalCluster(**options, dashboard_address=":0") as cluster,
-        distributed.Client(cluster) as found,
-    ):
-        yield found
-
-
-def kill_the_first_that_began(killed):
-    """Kill the process whose number is in the file `began`, once there is one."""
-    for _ in range(6000):
-        time.sleep(0.05)
-        if Path("began").exists() and (pid := Path("began").read_text()):
-            os.kill(int(pid), signal.SIGKILL)
-            killed.append(int(pid))
-            return
-
-
-@pytest.mark.parametrize("client", [(2, 3)], indirect=True)
-def test_a_cluster_loses_nothing_where_a_worker_is_killed(here, client, monkeypatch):
-    """In the middle of a fit. The results are those without a cluster, to 1e-10."""
-    head, line, rest = WAITS.partition("\n\n")
-    Path("waits.py").write_text(head + line + BEGAN + rest)
-    models, killed = ["lambert", "ward", "waits.py", "koenderink"], []
-    workers = client.run(os.getpid)
-    killer = threading.Thread(target=kill_the_first_that_began, args=(killed,))
-    killer.start()
-    found = bk.sweep([*FILES, "missing.npz"], models, client=client, folder="out")
-    killer.join()
-    assert killed[0] in workers.values()
-    assert len(found.fits) == 12
-    assert {row.file for row in found.failed} == {"missing.npz"}
-    monkeypatch.setattr(sweeping, "run_in_processes", run_here)
-    alone = bk.sweep(FILES, models)
-    for row, other in zip(found.rows, alone.rows, strict=False):
-        assert (row.material, row.model) == (other.material, other.model)
-        assert row.error == pytest.approx(other.error, rel=1e-10, abs=1e-10)
-        for name, value in other.fit.values.items():
-            assert row.fit.values[name] == pytest.approx(value, rel=1e-10, abs=1e-10)
-    assert bk.sweep(FILES, models, folder="out").found == 12
-
-
-@pytest.mark.parametrize("client", [(1, 0)], indirect=True)
-def test_only_the_fit_fails_of_which_every_worker_dies(here, client):
-    Path("deadly.py").write_text(DEADLY.replace("ALWAYS_OR_ONCE", "True"))
-    found = bk.sweep("chalk.npz", ["lambert", "deadly.py"], client=client)
-    assert [row.model for row in found.failed] == ["deadly"]
-    assert "chalk.npz: deadly ended every worker that tried it" in found.problems[0]
-
-
-@pytest.mark.parametrize("client", [(1, 0)], indirect=True)
-def test_ctrl_c_leaves_nothing_to_do_on_the_cluster(here, client):
-    def interrupt(done, total):
-        if done:
-            raise KeyboardInterrupt
-
-    found = bk.sweep(FILES, LINEAR, client=client, progress=interrupt)
-    assert (len(found.rows), found.requested) == (1, 6)
-    assert not any(client.processing().values())

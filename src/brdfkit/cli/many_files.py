@@ -24,6 +24,7 @@ def fit_many_files(
     workers: int | None,
     judge: bool,
     console: Console,
+    client: Any = None,
 ) -> None:
     """Fit models to several files by `brdfkit.sweep`, and print their errors.
 
@@ -33,6 +34,7 @@ def fit_many_files(
     from brdfkit.fitting.sweeping import sweep
 
     options: dict[str, Any] = {"folder": folder, "workers": workers, "judge": judge}
+    options["client"] = client
     what = f"fit {len(names)} models to {len(files)} materials"
     with use_results_folder(folder), console.progress(what) as progress:
         result = sweep(files, names, settings=settings, **options, progress=progress)

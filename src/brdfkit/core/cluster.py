@@ -2,8 +2,8 @@
 
 The workers call one function with what all tasks share and with one task. Both are sent as pickles
 that only a worker opens (`Parcel`), so that the scheduler copies bytes and imports no models. What
-is shared is itself a task of the cluster: it goes to each worker once, and if the last worker that
-has it dies, the scheduler makes it again.
+is shared is itself a task of the cluster, unless it is small: it goes to each worker once, and if
+the last worker that has it dies, the scheduler makes it again.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from brdfkit.core.version import __version__
 T = TypeVar("T")
 # Configuration of Dask: the size of a task from which a client warns. What tasks share may be large
 WARNING = "distributed.admin.large-graph-warning-threshold"
+SMALL = 10_000  # bytes: what tasks share is sent with each of them if it is not longer
 
 
 @dataclass(eq=False)
@@ -71,7 +72,7 @@ class Parcel:
                 try:
                     self.content = cloudpickle.loads(self.data)
                 except UserWarning as changed:
-                    raise BrdfkitError(f"{changed}") from None
+                    raise BrdfkitError(f"On a worker of the cluster: {changed}") from None
         return self.content
 
     def __getstate__(self) -> dict[str, Any]:
@@ -127,15 +128,20 @@ def run_tasks(
 
     run = uuid4().hex[:8]
 
-    def submit(task: T, name: str) -> Any:
-        """Send a task to the scheduler, under a `name` that no other task has."""
-        key, parcel = (f"{function.__name__}-{run}", name), Parcel.pack(task)
+    def submit(task: T, number: int) -> Any:
+        """Send a task to the scheduler; those with a small `number` begin first."""
+        key = (f"{function.__name__}-{run}", f"{number}: {describe(task)}")
+        # The scheduler mixes tasks that arrive within a tenth of a second, unless it knows better
+        options = {"key": key, "priority": -number}
         with dask.config.set({WARNING: "1 TB"}):
-            return client.submit(_call_on_worker, function, kept, parcel, key=key)
+            return client.submit(_call_on_worker, function, kept, Parcel.pack(task), **options)
 
-    with dask.config.set({WARNING: "1 TB"}):
-        kept = client.submit(_return_parcel, Parcel.pack(shared, files), key=(f"shared-{run}", ""))
-    waiting = {submit(task, f"{i}: {describe(task)}"): task for i, task in enumerate(tasks)}
+    kept: Any = Parcel.pack(shared, files)
+    if len(kept.data) > SMALL:
+        with dask.config.set({WARNING: "1 TB"}):
+            kept = client.submit(_return_parcel, kept, key=(f"shared-{run}", ""))
+        client.replicate([kept])  # otherwise all tasks would first wait for the worker that has it
+    waiting = {submit(task, number): task for number, task in enumerate(tasks)}
     suspects: list[T] = []
     try:
         for future in as_completed(waiting):
@@ -148,8 +154,8 @@ def run_tasks(
                 yield task, explain_loss(error, describe(task))
             else:
                 yield task, result
-        for number, task in enumerate(suspects):
-            future = submit(task, f"alone {number}: {describe(task)}")
+        for number, task in enumerate(suspects, start=len(tasks)):
+            future = submit(task, number)
             waiting[future] = task
             try:
                 result = future.result()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from brdfkit.cli.cluster import connect_client, scheduler_option
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import print_message
 from brdfkit.cli.fit_output import print_fits
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     metavar="N",
     help="Number of processes, for several FILEs. Default: one for each core.",
 )
+@scheduler_option("For several FILEs: ")
 @click.option(
     "--judge",
     is_flag=True,
@@ -69,6 +71,7 @@ def fit(
     mends: dict[str, bool],
     output: Path | None,
     workers: int | None,
+    scheduler: str | None,
     judge: bool,
     exportable: str | None,
     rendered: bool,
@@ -106,7 +109,10 @@ def fit(
         _refuse_mends(mends)
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
-        fit_many_files(files, models, how, output, workers, judge, console)
+        with connect_client(scheduler) as client:
+            fit_many_files(files, models, how, output, workers, judge, console, client)
+    elif scheduler:
+        raise BrdfkitError("--scheduler is for several FILEs; leave it out for one.")
     elif judge:
         raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
     else:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from brdfkit.cli.cluster import connect_client, scheduler_option
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import exit_interrupted
 from brdfkit.cli.options import output_option, writing_options
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     metavar="PART",
     help="Check only this part, such as table_9_1; repeat it for more.",
 )
+@scheduler_option()
 @writing_options
 def reproduce(
     name: str | None,
@@ -47,6 +49,7 @@ def reproduce(
     data: Path | None,
     tables: Path | None,
     parts: tuple[str, ...],
+    scheduler: str | None,
     console: Console,
 ) -> None:
     """Check the claims of a thesis by repeating its experiments.
@@ -67,13 +70,18 @@ def reproduce(
         else:
             console.print_table(["thesis", "title"], list(titles.items()))
         return
-    with use_results_folder(output), console.progress(f"reproduce {name}") as progress:
+    with (
+        connect_client(scheduler) as client,
+        use_results_folder(output),
+        console.progress(f"reproduce {name}") as progress,
+    ):
         result = reproduce_thesis(
             name,
             path=output,
             data=data,
             tables=tables,
             parts=list(parts) or None,
+            client=client,
             progress=progress,
         )
     _print_claims(result, console)
