@@ -43,7 +43,8 @@ class FilteredLight:
 
     `kind` is one of the classes in `FILTERS`, which store means over lobes, and `side` the size of
     the filtered map's finest level [texels]. Who knows that the emitter never changes but turns
-    sets `only_turns`, so that a large map is not compared before every picture.
+    sets `only_turns`, so that a large map is not compared before every picture, and is filtered
+    once for all lobes.
     """
 
     def __init__(self, kind: type[LobeMaps | Mips], side: int) -> None:
@@ -87,7 +88,7 @@ class FilteredLight:
         source, axes = self._describe_emitter(emitter)
         turn = _find_turn(self.filtered_axes, axes)
         if self.source != source or turn is None:
-            turn = self._filter(source, axes, find_sharpest())
+            turn = self._filter(source, axes, inf if self.only_turns else find_sharpest())
         elif self.sharpest < inf and find_sharpest() > self.sharpest:
             turn = self._filter(source, axes, inf)
         elif np.array_equal(axes, self.axes):
