@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import kernel_compilation
 import pytest
-from chromium import open_chromium
+from chromium import start_chromium, stop_chromium
 
 import brdfkit as bk
 from brdfkit.core.discovery import plugin_files
@@ -31,6 +31,7 @@ def pytest_configure(config):
     os.environ["MPLCONFIGDIR"] = mpl.get_cachedir()  # its list of fonts takes seconds to make
     folder = TemporaryDirectory(prefix="brdfkit-tests-")
     config.add_cleanup(folder.cleanup)
+    config.add_cleanup(stop_chromium)
     os.environ["XDG_CACHE_HOME"] = folder.name
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -173,8 +174,7 @@ def model(model_name):
     return bk.models()[model_name]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
-    """Headless Chromium."""
-    with open_chromium() as launched:
-        yield launched
+    """Headless Chromium, of which a worker starts one: it takes a second."""
+    return start_chromium()

@@ -3,6 +3,7 @@
 import nbclient
 import nbformat
 import pytest
+from chromium import execute_beside_chromium
 
 import brdfkit as bk
 
@@ -26,7 +27,7 @@ with bk.progress("a < b") as bar:
                 drawn.append(message["content"]["data"])
             return super().process_message(message, *rest)
 
-    Client(notebook, timeout=300).execute()
+    execute_beside_chromium(Client(notebook, timeout=300))
     shown = [data["text/html"] for data in drawn[:-1]]
     assert [f'value="{done}" max="3"' in html for done, html in enumerate(shown)] == [True] * 3
     assert all("a &lt; b" in html for html in shown)

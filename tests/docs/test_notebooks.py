@@ -17,6 +17,7 @@ import drjit as dr
 import jupytext
 import matplotlib.pyplot as plt
 import pytest
+from chromium import execute_beside_chromium
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
 
@@ -90,7 +91,7 @@ def test_a_notebook_runs_in_a_kernel(name, tmp_path):
         resources={"metadata": {"path": tmp_path}},
         extra_arguments=[f"--IPKernelApp.exec_lines={SHARE_THE_CORES}"],
     )
-    client.execute()
+    execute_beside_chromium(client)
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", ())]
     assert outputs
     assert not [output for output in outputs if output.get("name") == "stderr"]

@@ -12,7 +12,7 @@ import openmaterial
 import pbrt_rules
 import radiance
 import webgl
-from chromium import open_chromium
+from chromium import start_chromium
 
 
 def evaluate_in_blender(paths, wi, wo):
@@ -83,14 +83,12 @@ def evaluate_in_three(paths, wi, wo):
     """three.js draws a plane under a light in Chromium, by glTF's own formula."""
     import gltf_oracle
 
-    with open_chromium() as browser:
-        return gltf_oracle.measure(browser, paths[0], wi, wo)
+    return gltf_oracle.measure(start_chromium(), paths[0], wi, wo)
 
 
 def evaluate_by_webgl(paths, wi, wo):
     """Chromium runs the shader."""
-    with open_chromium() as browser:
-        return webgl.evaluate(browser, paths[0].read_text(encoding="utf-8"), wi, wo)
+    return webgl.evaluate(start_chromium(), paths[0].read_text(encoding="utf-8"), wi, wo)
 
 
 ORACLES = {

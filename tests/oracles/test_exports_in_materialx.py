@@ -36,7 +36,9 @@ def write(tmp_path_factory):
 @pytest.fixture(scope="module")
 def page(browser):
     """A page that keeps its programs."""
-    return browser.new_page()
+    opened = browser.new_page()
+    yield opened
+    opened.close()
 
 
 def measure_white(page, write, content):
