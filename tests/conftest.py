@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 
 import kernel_compilation
 import pytest
+import syntax_memory
 from chromium import start_chromium, stop_chromium
 
 import brdfkit as bk
@@ -38,6 +39,7 @@ def pytest_configure(config):
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1))
     dr.set_thread_count(max(1, (os.cpu_count() or 1) // workers))
     kernel_compilation.shorten()
+    syntax_memory.remember()
 
 
 @pytest.fixture

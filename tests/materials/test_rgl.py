@@ -2,6 +2,7 @@
 
 import io
 import pickle
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -510,12 +511,24 @@ SOURCES = {
 }
 
 
+@pytest.fixture(scope="module")
+def write_once(mi, tmp_path_factory):
+    """A function that returns a source and its file, which it writes once: that takes a second."""
+    folder = tmp_path_factory.mktemp("written")
+
+    @cache
+    def write(name):
+        source, path = SOURCES[name](), folder / f"{name}.bsdf"
+        save(source, path)
+        return source, path
+
+    return write
+
+
 @pytest.mark.parametrize("name", SOURCES)
-def test_mitsuba_renders_what_was_written(llvm_variant, tmp_path, name):
-    source = SOURCES[name]()
-    path = tmp_path / "written.bsdf"
-    material = saved(source, path)
-    rendered = Rendered(path, source)
+def test_mitsuba_renders_what_was_written(llvm_variant, write_once, name):
+    source, path = write_once(name)
+    material, rendered = load(path), Rendered(path, source)
 
     wi, wo = pairs()
     theirs, expected = rendered.eval(wi, wo), source.eval(wi, wo)
@@ -552,10 +565,9 @@ def test_a_noisy_table_is_kept_between_its_cells_too(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["ggx", "anisotropic", "red_plastic"])
-def test_mitsuba_samples_what_was_written(llvm_variant, tmp_path, monkeypatch, name):
+def test_mitsuba_samples_what_was_written(llvm_variant, write_once, monkeypatch, name):
     monkeypatch.setattr(checks.sampling, "SUBCELLS", (24, 96))
-    save(SOURCES[name](), tmp_path / "written.bsdf")
-    passed, figure = checks.sampling.check_chi_squared(Rendered(tmp_path / "written.bsdf"))
+    passed, figure = checks.sampling.check_chi_squared(Rendered(write_once(name)[1]))
     assert passed, figure
 
 
