@@ -11,6 +11,9 @@ def main(name: str | None = None) -> None:
 
     Ctrl-C while the commands are imported ends the program at once, without a traceback.
     """
+    # The threads of NumPy's OpenBLAS sleep as soon as they have nothing to do. By default they spin
+    # for some 25 ms after each product, which is a sixth of the processor time of a small fit
+    os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _exit_interrupted)
     from brdfkit.cli import main as run
