@@ -13,13 +13,18 @@ them in proportion to the cosine. Albedo images show the albedo at the angle of 
 nobody can tell which part of a measurement is diffuse.
 """
 
+from hashlib import blake2b
 from typing import Any
 
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitColour, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
+from brdfkit.mitsuba_bridge.bsdf.half_vector_table import (
+    HalfVectorTable,
+    ReflectedShares,
+    integrate_shares,
+)
 from brdfkit.mitsuba_bridge.bsdf.measured_base import define_measured_bsdf
 from brdfkit.mitsuba_bridge.bsdf.table_lookup import find_corners
 from brdfkit.mitsuba_bridge.channels import make_channels
@@ -27,7 +32,10 @@ from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.model.samples import Table
 
 # Size of the table to draw half vectors of anisotropic materials; larger ones take seconds to make
-ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
+ANISOTROPIC: dict[str, Any] = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
+KEPT = 8  # number of materials whose shares are kept for the next scene; of one, 0.4 or 3 MB
+
+_kept: dict[tuple[Any, ...], ReflectedShares] = {}
 
 
 def define(mi: MitsubaModule) -> type:
@@ -41,14 +49,9 @@ def define(mi: MitsubaModule) -> type:
             self.table, wavelengths = _read_table(props)
             cells = self.table.filled_values
             self.values = make_channels(cells.reshape(-1, cells.shape[-1]), wavelengths)
-            size: dict[str, Any] = ANISOTROPIC if self.table.anisotropic else {}
-            half_vectors = HalfVectorTable(self.eval_in_numpy, **size)
-            self.albedos = make_channels(half_vectors.albedo, wavelengths)
-            self.set_sampling(half_vectors, self.table.anisotropic)
-
-        def eval_in_numpy(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-            """Return the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), in NumPy."""
-            return np.maximum(self.table.eval(wi, wo), 0)
+            shares = _find_shares(self.table)
+            self.albedos = make_channels(shares.albedo, wavelengths)
+            self.set_sampling(HalfVectorTable(shares), self.table.anisotropic)
 
         def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:
             return self.values.average_rows(find_corners(self.table, wi, wo), si)
@@ -67,6 +70,20 @@ def example() -> dict[str, Any]:
     from brdfkit.core import catalogue  # imported here, since the import is slow
 
     return {"type": "measured_table", "filename": str(catalogue.find_material_file("plaster"))}
+
+
+def _find_shares(table: Table) -> ReflectedShares:
+    """Return the shares of light by which directions are drawn; integrate them only once."""
+    values = np.ascontiguousarray(table.values)
+    key = blake2b(values.data).digest(), values.shape, table.phi_d_period
+    shares = _kept.get(key)
+    if shares is None:
+        if len(_kept) >= KEPT:
+            _kept.pop(next(iter(_kept)), None)
+        size = ANISOTROPIC if table.anisotropic else {}
+        shares = integrate_shares(lambda wi, wo: np.maximum(table.eval(wi, wo), 0), **size)
+        _kept[key] = shares
+    return shares
 
 
 def _read_table(props: MitsubaObject) -> tuple[Table, FloatArray | None]:

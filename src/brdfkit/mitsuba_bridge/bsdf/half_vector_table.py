@@ -10,6 +10,7 @@ wi.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
@@ -22,44 +23,62 @@ from brdfkit.core.geometry.vectors import azimuth, cos_theta_d, half_vector, pol
 from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, find_bracket, find_periodic_bracket
 
 
+@dataclass(frozen=True, eq=False)
+class ReflectedShares:
+    """How the light from each incidence is shared out to cells of half vectors.
+
+    `azimuths` and `angles` are the numbers of azimuths and polar angles of the incidences, and
+    `cells` those of cells in theta_h and phi_h. `rows` (incidences, n_h) and `columns`
+    (incidences, n_h, n_p) are the cumulative shares of a row of cells, theta_h, and of a cell in
+    its row. `albedo` is the directional albedo (incidences, channels).
+    """
+
+    azimuths: int
+    angles: int
+    cells: tuple[int, int]
+    rows: AnyArray
+    columns: AnyArray
+    albedo: AnyArray
+
+
+def integrate_shares(
+    f: Callable[..., Any],
+    azimuths: int = 1,
+    angles: int = 32,
+    cells: tuple[int, int] = (90, 32),
+    points: int = 2,
+) -> ReflectedShares:
+    """Integrate a BRDF over cells of half vectors, which takes tenths of a second to seconds.
+
+    `f(wi, wo)` is the BRDF (n, channels) in sr⁻¹ at NumPy direction pairs (n, 3). `azimuths` is 1
+    for an isotropic BRDF. The `cells` are square-root spaced in theta_h; phi_h is relative to the
+    azimuth of wi. `points` is the number of points along each side of a cell at which f is
+    evaluated.
+    """
+    theta_i = (np.arange(angles) + 0.5) / angles * np.pi / 2
+    phi_i = np.arange(azimuths) / azimuths * 2 * np.pi
+    light = np.concatenate([_integrate_cells(f, theta_i, phi, cells, points) for phi in phi_i])
+    masses = light.mean(axis=-1)
+    masses[masses.sum(axis=(1, 2)) == 0] = 1  # if nothing is reflected, any direction will do
+    rows, columns = _cumulate_shares(masses.sum(axis=2)), _cumulate_shares(masses)
+    return ReflectedShares(azimuths, angles, cells, rows, columns, light.sum(axis=(1, 2)))
+
+
 class HalfVectorTable:
     """A `Sampling` that draws directions in proportion to a BRDF, in the current variant.
 
-    `f(wi, wo)` is the BRDF (n, channels) in sr⁻¹ at NumPy direction pairs (n, 3). `azimuths` and
-    `angles` are the numbers of azimuths (1 for an isotropic BRDF) and of polar angles of the
-    incidences. `cells` are the numbers of cells in theta_h, square-root spaced, and in phi_h,
-    relative to the azimuth of wi. `points` is the number of points along each side of a cell at
-    which f is evaluated.
-
-    Cells where f is 0 are never drawn, so the table has to be mixed with cosine samples.
-    `albedo` is the directional albedo (incidences, channels).
+    `shares` are from `integrate_shares`. Cells where the BRDF is 0 are never drawn, so the table
+    has to be mixed with cosine samples.
     """
 
-    def __init__(
-        self,
-        f: Callable[..., Any],
-        azimuths: int = 1,
-        angles: int = 32,
-        cells: tuple[int, int] = (90, 32),
-        points: int = 2,
-    ) -> None:
-        self.azimuths, self.angles, self.cells = azimuths, angles, cells
-        theta_i = (np.arange(angles) + 0.5) / angles * np.pi / 2
-        phi_i = np.arange(azimuths) / azimuths * 2 * np.pi
-        light = np.concatenate([_integrate_cells(f, theta_i, phi, cells, points) for phi in phi_i])
-        self.albedo = light.sum(axis=(1, 2))
-
-        # Probabilities of drawing a row of cells (theta_h), and a cell in it (phi_h)
-        masses = light.mean(axis=-1)
-        masses[masses.sum(axis=(1, 2)) == 0] = 1  # if nothing is reflected, any direction will do
-        rows = _cumulate_shares(masses.sum(axis=2))
-        columns = _cumulate_shares(masses)
-        self.rows, self.columns = Rows(rows.ravel()), Rows(columns.ravel())
+    def __init__(self, shares: ReflectedShares) -> None:
+        self.azimuths, self.angles, self.cells = shares.azimuths, shares.angles, shares.cells
+        self.rows, self.columns = Rows(shares.rows.ravel()), Rows(shares.columns.ravel())
 
         # The density per solid angle of the drawn cells, with the rounding of their probabilities
-        shares = _shares_from_sums(rows)[..., None] * _shares_from_sums(columns)
-        self.density = Rows((shares / _cell_solid_angles(cells)[:, None]).ravel())
-        self.edges = Rows(_compute_edge_versines(cells[0]))
+        drawn = _shares_from_sums(shares.rows)[..., None] * _shares_from_sums(shares.columns)
+        self.density = Rows((drawn / _cell_solid_angles(self.cells)[:, None]).ravel())
+        self.edges = Rows(_compute_edge_versines(self.cells[0]))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         """Draw a direction, possibly below the surface, by the random numbers u.x, u.y and u.z."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, ArrayLike, MitsubaObject
-from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
+from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable, integrate_shares
 from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values
 
@@ -38,7 +38,8 @@ def tabulate_lobe_sum(model: Model, weights: AnyArray, lobes: list[int]) -> Half
             values[rows] = plain[:, lobes] @ weights
         return np.maximum(values, 0)
 
-    return HalfVectorTable(evaluate_sum, **(ANISOTROPIC if model.is_anisotropic() else ISOTROPIC))
+    size = ANISOTROPIC if model.is_anisotropic() else ISOTROPIC
+    return HalfVectorTable(integrate_shares(evaluate_sum, **size))
 
 
 def average_texture(texture: MitsubaObject, default: ArrayLike) -> AnyArray:
