@@ -43,4 +43,7 @@ def test_an_end_with_weights_that_no_model_may_have_comes_last():
     """As of two lobes of Lafortune's over CUReT, of which one had the weight 1e109."""
     weights = np.array([1.0, 1e109, 1.0, 2.0, 1e120]).reshape(5, 1, 1)
     ends = SimpleNamespace(error=np.array([3.0, 1.0, 2.0, 2.0, 1.5]), weights=weights)
-    assert Search(ends, np.ones(5, bool), 0).find_best_ends(2).tolist() == [2, 0]
+    assert Search(ends, np.zeros((5, 3, 3)), np.ones(5, bool), 0).find_best_ends(2).tolist() == [
+        2,
+        0,
+    ]

@@ -71,7 +71,7 @@ def note_on_grazing_colour(data: Measured, samples: Samples, fitted: Model) -> l
     largest = np.degrees(np.arccos(np.clip(cosine.min(), 0, 1)))
     if largest < OBLIQUE:
         return []
-    rim = samples.at(cosine < np.cos(np.radians(largest - RIM)))
+    rim = samples.at(np.flatnonzero(cosine < np.cos(np.radians(largest - RIM))))
     light = rim.weight * rim.wi[:, 2] * rim.wo[:, 2]
     if data.is_table:  # small cells in the highlight must not count as much as large ones
         light = light * compute_measure(rim.extents, "solid_angle")

@@ -61,8 +61,15 @@ def find_half_angle_spacing(samples: Samples) -> float:
 
     A narrower highlight contains samples at one half angle only, which do not determine its width.
     """
-    cosine = cos_theta_h(samples.wi, samples.wo)
-    few = np.partition(cosine, -NEAREST)[-NEAREST:] if len(cosine) > NEAREST else cosine
+    starts = samples.half_vector_starts
+    if starts is None:
+        cosine = cos_theta_h(samples.wi, samples.wo)
+        few = np.partition(cosine, -NEAREST)[-NEAREST:] if len(cosine) > NEAREST else cosine
+    else:  # samples of a table with equal half vectors are counted together
+        cosine = cos_theta_h(samples.wi[starts], samples.wo[starts])
+        order = np.argsort(-cosine)
+        counts = np.diff(starts, append=len(samples.wi))[order]
+        few = cosine[order][np.cumsum(counts) - counts < NEAREST]
     different = np.unique(np.round(np.degrees(np.arccos(np.minimum(few, 1))) / SAME)) * SAME
     return float(different[min(1, len(different) - 1)])
 

@@ -1,12 +1,13 @@
 """Evaluates a model in NumPy, in double precision: the sum of its lobes times their weights."""
 
+from functools import lru_cache
 from typing import Any
 
-import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, ArrayLike, JitFloat
 from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.recording import Recorded
 from brdfkit.core.jit.threads import in_turn
 
 
@@ -19,6 +20,8 @@ def evaluate_model(model: Any, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    if above.all():
+        return mix_lobes(model, to_weight_matrix(model), wi, wo)
     up = np.array([0.0, 0.0, 1.0])
     wi, wo = np.where(above[:, None], wi, up), np.where(above[:, None], wo, up)
     return np.where(above[:, None], mix_lobes(model, to_weight_matrix(model), wi, wo), 0.0)
@@ -31,7 +34,10 @@ def mix_lobes(model: Any, weights: AnyArray, wi: AnyArray, wo: AnyArray) -> AnyA
     be above the surface.
     """
     plain, squared = compute_lobe_values(model, wi, wo)
-    values = plain @ weights + squared @ weights**2 + compute_fixed_values(model, wi, wo)
+    values = plain @ weights
+    if squared.any():
+        values += squared @ weights**2
+    values += compute_fixed_values(model, wi, wo)
     return np.maximum(values, 0) if model.has_signed_weights() else values
 
 
@@ -81,16 +87,46 @@ def compute_lobe_values(model: Any, wi: AnyArray, wo: AnyArray) -> list[AnyArray
     Returns two arrays (n, lobes) in sr⁻¹: the values of `Lobe.eval`, and of `Lobe.quadratic`, which
     are 0 for a lobe without it. The directions have to be above the surface.
     """
-    terms = model.bind(to_shape_scalars(model)).terms()
-    pair = double_precision.to_vector(wi), double_precision.to_vector(wo)
-    plain = [lobe.eval(*pair) for _, lobe in terms]
-    squared = [lobe.quadratic(*pair) if lobe.quadratic else 0.0 for _, lobe in terms]
-    dr.eval(plain, squared)  # in one kernel, because a kernel for each lobe takes six times as long
-    shape = len(wi), len(terms)
-    return [
-        np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)
-        for columns in (plain, squared)
-    ]
+    pair = [np.asarray(w) for w in (wi, wo)]
+    directions = [double_precision.to_array(w[:, k]) for w in pair for k in range(3)]
+    shapes = to_shape_scalars(model)
+    kind: Any = type(model)
+    evaluate, rows = _make_lobe_function(kind, tuple(shapes))
+    values = evaluate(directions, [*shapes.values(), double_precision.to_scalar(0.0)])
+    both = np.zeros((2 * len(model.weights()), len(pair[0])))  # each column contiguous
+    for row, value in zip(rows, values, strict=True):
+        both[row] = np.asarray(value)
+    plain, squared = np.split(both, 2)
+    return [plain.T, squared.T]
+
+
+@lru_cache(maxsize=64)
+def _make_lobe_function(model: Any, names: tuple[str, ...]) -> tuple[Recorded, list[int]]:
+    """Return a function that evaluates all lobes of a model class, and the rows of its results.
+
+    The function takes the coordinates of wi and wo as arrays (n,), and the shape parameters of
+    these `names` and 0 as scalars. It returns the values of the lobes, and after them those of
+    `Lobe.quadratic`. The rows count the lobes twice, for both kinds of values.
+    """
+    lobes = [lobe for _, lobe in model().terms()]
+    quadratic = [k for k, lobe in enumerate(lobes) if lobe.quadratic]
+
+    def evaluate(directions: list[JitFloat], shapes: list[JitFloat]) -> list[JitFloat]:
+        *values, zero = shapes
+        lobes = [lobe for _, lobe in model.bind(dict(zip(names, values, strict=True))).terms()]
+        wi, wo = double_precision.Vector(*directions[:3]), double_precision.Vector(*directions[3:])
+        results = [lobe.eval(wi, wo) for lobe in lobes]
+        results += [lobes[k].quadratic(wi, wo) for k in quadratic]
+        zeros = zero * wi.z  # a constant lobe is one number, or an array of a constant size
+        return [result + zeros for result in results]
+
+    rows = [*range(len(lobes)), *(len(lobes) + k for k in quadratic)]
+    return Recorded(evaluate, is_safe=is_own(model)), rows
+
+
+def is_own(model: Any) -> bool:
+    """Return whether a model class is brdfkit's own, and so are all models that it sums up."""
+    return all(part.__module__.startswith("brdfkit.plugins.") for part in model.made_of())
 
 
 @in_turn

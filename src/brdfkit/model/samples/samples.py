@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, ArrayLike, BoolArray
+from brdfkit.core.array_types import AnyArray, ArrayLike, BoolArray, IntArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.model.samples.cells import copy_columns, find_directions_within, minimum_cosine
+from brdfkit.model.samples.cells import copy_columns, find_cells_within, minimum_cosine
 from brdfkit.model.samples.table import Table
 
 
@@ -98,19 +99,22 @@ class Samples:
         `factors` (cells,) become the weights of the samples, and `errors` (cells, channels) their
         standard errors; both are given for all cells of the table, in C order.
         """
-        axes = tuple(tuple(axis.tolist()) for axis in table.centres)
-        cells, wi, wo = find_directions_within(axes, float(max_angle))
+        cells = find_cells_within(table.shape, float(table.phi_d_period), float(max_angle))
         values = table.values.reshape(-1, table.values.shape[-1])
-        values = copy_columns(values, cells)
+        values = copy_columns(values, cells.numbers)
         known = np.asarray(np.isfinite(values).all(axis=1))
-        n_h, n_d, n_p = table.shape[-3:]
-        pairs = cells // n_p
-        half_vectors = pairs // n_d
-        weight = np.ones(len(cells)) if factors is None else factors[cells]
-        extents = copy_columns(table.extents.reshape(-1, 2), pairs % (n_h * n_d))
-        own = None if errors is None else errors[cells]
-        samples = cls(wi, wo, values, known, weight, extents, (half_vectors, pairs), own)
+        weight = np.ones(len(known)) if factors is None else factors[cells.numbers]
+        own = None if errors is None else errors[cells.numbers]
+        indices = cells.half_vectors, cells.pairs
+        samples = cls(cells.wi, cells.wo, values, known, weight, cells.extents, indices, own)
         return samples if known.all() else samples.at(known)
+
+    @cached_property
+    def half_vector_starts(self) -> IntArray | None:
+        """The index of the first sample of each half vector of a table, or None without a table."""
+        if self.cells is None:
+            return None
+        return np.flatnonzero(np.diff(self.cells[0], prepend=-1))
 
     @property
     def largest_angle(self) -> float:

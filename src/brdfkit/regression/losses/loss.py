@@ -31,7 +31,7 @@ from brdfkit.model.samples.measures import MEASURES, compute_measure
 Weights: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Loss:
     """A loss E that a fit minimises: the root of a weighted mean of squared differences.
 

@@ -82,7 +82,11 @@ class Block:
         if not double_precision.has_derivatives():  # then arrays do not support dr.gather
             size = self.rows.stop - self.rows.start
             return [float64(np.repeat(column, size)) for column in table.T]
-        flat, first = double_precision.to_array(table.ravel()), self.point * columns
+        return self.gather_by_point(double_precision.to_array(table.ravel()), columns)
+
+    def gather_by_point(self, flat: JitFloat, columns: int) -> list[JitFloat]:
+        """Return `repeat_for_samples` of a table (points, `columns`) that is a `flat` array."""
+        float64, first = double_precision.choose_float_type(), self.point * columns
         return [dr.gather(float64, flat, first + k) for k in range(columns)]
 
     def evaluate_columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:

@@ -31,7 +31,7 @@ def minimise_in_box(
     n = gradient.shape[1]
     scale = 1 / np.sqrt(np.maximum(hessian.diagonal(axis1=1, axis2=2), 1e-300))
     form = hessian * (scale[:, :, None] * scale[:, None, :])
-    form[:, range(n), range(n)] += 1e-14
+    form.reshape(-1, n * n)[:, :: n + 1] += 1e-14  # the diagonals
     force = gradient * scale
     z = np.linalg.solve(form, -force[:, :, None])[:, :, 0]
     least, most = low, high
@@ -68,7 +68,7 @@ def _solve_free_entries(
     free = ~fixed
     reduced = form * (free[:, :, None] & free[:, None, :])
     n = form.shape[1]
-    reduced[:, range(n), range(n)] += fixed
+    reduced.reshape(-1, n * n)[:, :: n + 1] += fixed
     right = -force - (form @ np.where(fixed, values, 0.0)[:, :, None])[:, :, 0]
     z = np.linalg.solve(reduced, np.where(fixed, 0.0, right)[:, :, None])[:, :, 0]
     return np.where(fixed, values, z)

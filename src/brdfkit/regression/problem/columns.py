@@ -33,14 +33,14 @@ class Columns:
     to shape parameters, as the file describes.
 
     `model`: the class; `names`: searched shape parameters; `fixed`: values of the other shape
-    parameters; `lobes`: index of the lobe of each value; `powers`: power of the lobe's weight that
-    multiplies each value, 1 or 2, or 0 for a lobe without a weight, whose index is 0; `slopes`:
-    pairs (index of a value, index of a shape parameter).
+    parameters, each a number or a Dr.Jit array; `lobes`: index of the lobe of each value; `powers`:
+    power of the lobe's weight that multiplies each value, 1 or 2, or 0 for a lobe without a weight,
+    whose index is 0; `slopes`: pairs (index of a value, index of a shape parameter).
     """
 
     model: type[Model]
     names: tuple[str, ...]
-    fixed: dict[str, float]
+    fixed: dict[str, Any]
     lobes: np.ndarray
     powers: np.ndarray
     slopes: tuple[tuple[int, int], ...]
@@ -62,7 +62,10 @@ class Columns:
 
     def make_model(self, shapes: Sequence[JitFloat]) -> Model:
         """Return the model with the searched shape parameters `shapes`, an array or number each."""
-        fixed = {name: double_precision.to_scalar(value) for name, value in self.fixed.items()}
+        fixed = {
+            name: double_precision.to_scalar(value) if isinstance(value, float) else value
+            for name, value in self.fixed.items()
+        }
         return self.model.bind(dict(zip(self.names, shapes, strict=True)) | fixed)
 
     def evaluate(

@@ -49,16 +49,24 @@ class Expansion:
 
         `u` (points, shapes), `weights` (points, channels, lobes): the points.
         """
-        points, channels, lobes = weights.shape
-        shapes = len(columns.names)
         change = make_derivative_matrix(columns, weights, space.differentiate_parameters(u))
-        by_channel = (change @ sums.moment[..., None])[..., 0]
-        gradient = np.zeros((points, shapes + channels * lobes))
-        gradient[:, :shapes] = by_channel[:, :, :shapes].sum(axis=1)
-        gradient[:, shapes:] = by_channel[:, :, shapes:].reshape(points, channels * lobes)
+        gradient = _sum_gradients((change @ sums.moment[..., None])[..., 0], len(columns.names))
         given = columns, space, u, weights, sums.error, gradient
         made = cls(*given, None, sums.gram, sums.moment)
         return made if sums.gram is None else replace(made, hessian=made._make_hessian(change))
+
+    def split_gradient(self) -> FloatArray:
+        """Return the gradient as parts (points, channels, n) of each channel."""
+        slopes = self.space.differentiate_parameters(self.u)
+        change = make_derivative_matrix(self.columns, self.weights, slopes)
+        by_channel = (change @ self.moment[..., None])[..., 0]
+        parts = [
+            _sum_gradients(
+                by_channel * (np.arange(by_channel.shape[1]) == c)[:, None], slopes.shape[1]
+            )
+            for c in range(by_channel.shape[1])
+        ]
+        return np.stack(parts, axis=1)
 
     def _make_hessian(self, change: FloatArray) -> FloatArray:
         """Return half the Gauss-Newton Hessians (points, n, n) of the squared loss E².
@@ -105,13 +113,25 @@ class Expansion:
         return minimise_in_box(gram, moment.reshape(-1, n), *limits).reshape(self.weights.shape)
 
     def select_points(self, rows: Any) -> Expansion:
-        """Return the expansion about some of the points, selected by indices or a mask."""
+        """Return the expansion about some of the points, selected by indices or a mask.
+
+        It shares its arrays with this expansion if all points are selected.
+        """
+        rows = np.asarray(rows)
+        if rows.dtype == bool and rows.all():
+            return self
         return replace(self, **{name: getattr(self, name)[rows] for name in ARRAYS})
 
     def replace_points(self, rows: IntArray, other: Expansion) -> None:
         """Replace the points with the indices `rows` by all points of the expansion `other`."""
         for name in ARRAYS:
             getattr(self, name)[rows] = getattr(other, name)
+
+
+def _sum_gradients(by_channel: FloatArray, shapes: int) -> FloatArray:
+    """Return gradients (points, n) from derivatives (points, channels, shapes + lobes)."""
+    weights = by_channel[:, :, shapes:].reshape(len(by_channel), -1)
+    return np.hstack([by_channel[:, :, :shapes].sum(axis=1), weights])
 
 
 ARRAYS = [f.name for f in fields(Expansion) if f.name not in ("columns", "space")]

@@ -16,6 +16,8 @@ once for each node. Every step of a fit then sums over the nodes only.
 
 from __future__ import annotations
 
+from typing import Any
+
 import drjit as dr
 import numpy as np
 
@@ -37,22 +39,24 @@ LONG_NODE = 1000
 
 def fold_problem(problem: Problem) -> FoldedProblem | None:
     """Return the `FoldedProblem` of a problem, or None if folding is impossible or too slow."""
-    cells = problem.samples.cells
     single = len(problem.groups) == 1  # folded sums are for all channels at once
-    if not (problem.linear and single) or cells is None or not double_precision.has_derivatives():
+    if not (problem.linear and single and double_precision.has_derivatives()):
+        return None
+    if problem.samples.cells is None:
         return None
     if not problem.columns.powers.all():  # sums with lobes without a weight are not made
         return None
     pairs = _depends_on_cos_d(problem)
     if pairs is None:
         return None
-    numbers = cells[1 if pairs else 0]
     if not problem.columns.slopes:  # all lobes stay the same, so one node is enough
-        numbers = np.zeros_like(numbers)
-    starts = np.flatnonzero(np.diff(numbers, prepend=-1))
-    return (
-        FoldedProblem(problem, starts) if len(starts) * SAMPLES_PER_NODE <= len(numbers) else None
-    )
+        starts: Any = np.zeros(1, int)
+    elif pairs:
+        starts = np.flatnonzero(np.diff(problem.samples.cells[1], prepend=-1))
+    else:
+        starts = problem.samples.half_vector_starts
+    few = len(starts) * SAMPLES_PER_NODE <= len(problem.samples.wi)
+    return FoldedProblem(problem, starts) if few else None
 
 
 def _depends_on_cos_d(problem: Problem) -> bool | None:

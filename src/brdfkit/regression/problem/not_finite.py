@@ -24,19 +24,20 @@ REMEDY = "keep the formula finite there, as by dr.maximum, or leave the directio
 
 
 def require_finite_columns(
-    columns: Columns, values: list[FloatArray], block: Block, space: Space, u: FloatArray
-) -> list[FloatArray]:
+    columns: Columns, values: FloatArray, block: Block, space: Space, u: FloatArray
+) -> FloatArray:
     """Return the columns of a model at the samples of a block, all finite.
 
-    `values`: for each of the `columns` an array (points, samples); `u` (points, shapes):
-    coordinates of the points in the search `space`. Raises `BrdfkitError` if a value is not finite.
-    A slope that is not finite becomes 0 if it is finite in Dr.Jit's reverse mode: forward mode
-    returns NaN for the derivative of 0^p by p.
+    `values`: the `columns` (points, columns, samples); `u` (points, shapes): coordinates of the
+    points in the search `space`. Raises `BrdfkitError` if a value is not finite. A slope that is
+    not finite becomes 0 if it is finite in Dr.Jit's reverse mode: forward mode returns NaN for the
+    derivative of 0^p by p.
     """
-    if all(np.isfinite(value.sum()) for value in values):  # quicker than a check of each
-        return values
+    with np.errstate(invalid="ignore"):
+        if np.isfinite(values.sum()):  # quicker than a check of each
+            return values
     count = len(columns.lobes)
-    for lobe, value in zip(columns.lobes, values, strict=False):
+    for lobe, value in zip(columns.lobes, values.swapaxes(0, 1), strict=False):
         if not np.isfinite(value).all():
             row = np.argwhere(~np.isfinite(value))[0][1]
             _raise_for_lobe(
@@ -45,12 +46,11 @@ def require_finite_columns(
                 value[~np.isfinite(value)][0],
                 describe_direction_pair(*block.get_sample_directions(), row),
             )
-    for point in np.flatnonzero(
-        [not np.isfinite([v[k] for v in values]).all() for k in range(len(u))]
-    ):
+    for point in np.flatnonzero(~np.isfinite(values).all(axis=(1, 2))):
         shapes = space.to_named_values(u[point])
         require_finite_slopes(columns.model, shapes, space.names, *block.get_sample_directions())
-    return [*values[:count], *(np.nan_to_num(v, posinf=0, neginf=0) for v in values[count:])]
+    slopes = np.nan_to_num(values[:, count:], posinf=0, neginf=0)
+    return np.concatenate([values[:, :count], slopes], axis=1)
 
 
 def require_finite_loss(

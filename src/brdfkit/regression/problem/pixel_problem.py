@@ -162,7 +162,9 @@ class PixelProblem(Problem):
                 block.pairs.split_by_point(column)
                 for column in self._evaluate_columns(block.pairs, u)
             ]
-            require_finite_columns(self.columns, arrays, block.pairs, self.space, u)
+            require_finite_columns(
+                self.columns, np.stack(arrays, axis=1), block.pairs, self.space, u
+            )
 
 
 class PictureProblem(PixelProblem):

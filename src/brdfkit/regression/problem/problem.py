@@ -23,6 +23,13 @@ from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.problem.blocks import GROUP, Block, Blocks
 from brdfkit.regression.problem.columns import Columns
 from brdfkit.regression.problem.expansion import Expansion, make_derivative_matrix
+from brdfkit.regression.problem.kernel import (
+    can_record,
+    compute_terms,
+    evaluate_recorded,
+    mix_columns,
+    shares_curvature,
+)
 from brdfkit.regression.problem.not_finite import require_finite_columns, require_finite_loss
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_weights
@@ -50,8 +57,10 @@ class Problem:
         self.weight_limits = np.array(bounds, float).T  # lower and upper ones of the lobes
         self.clamped = not loss.linear and bool((self.weight_limits < 0).any())
         self.extended = extended
+        self.recorded = len(self.groups) == 1 and can_record(model, loss)
         self.linear = loss.linear and (self.columns.powers < 2).all()
         self.factors: list[FloatArray] | None = None
+        self._constant: tuple[list[JitFloat], FloatArray] | None = None
 
         importance = loss.importance(samples)
         if not importance.any():
@@ -133,7 +142,7 @@ class Problem:
     def compute_sums(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Sums:
         """Return the sums over all samples from which the squared loss and derivatives follow."""
         sums = Sums.make_zeros(len(u), self.channels, len(self.columns), curvature)
-        for _, evaluated in self._evaluate_blocks(u, weights):
+        for _, evaluated in self._evaluate_blocks(u, weights, curvature):
             sums.add_samples(*evaluated)
         if not sums.is_finite():
             self._raise_if_not_finite(u, weights)
@@ -153,40 +162,61 @@ class Problem:
         ]
 
     def iterate_jacobians(
-        self, u: FloatArray, weights: FloatArray
+        self, u: FloatArray, weights: FloatArray, channels: slice = slice(None)
     ) -> Iterator[tuple[slice, list[FloatArray], list[FloatArray]]]:
-        """Yield the sample indices, residuals and derivatives of each block of samples."""
+        """Yield the sample indices, residuals and derivatives of each block of samples.
+
+        Derivatives are those of some `channels`, by default of all.
+        """
         change = make_derivative_matrix(self.columns, weights, np.ones_like(u))[0]
+        unit = np.eye(*change.shape[1:])  # of a model without slopes
         for block, (columns, _, moments, grams) in self._evaluate_blocks(u, weights):
             roots = [np.sqrt(gram[0]) for gram in grams]
+            roots *= self.channels // len(roots)  # one for each channel, or one for all
             residuals = [
                 moment[0] / np.where(root > 0, root, 1)
                 for moment, root in zip(moments, roots, strict=True)
             ]
-            T = np.stack([column[0] for column in columns])
-            jacobians = [(by @ T) * root for by, root in zip(change, roots, strict=True)]
+            own = zip(change[channels], roots[channels], strict=True)
+            jacobians = [
+                (columns[0] if np.array_equal(by, unit) else by @ columns[0]) * root
+                for by, root in own
+            ]
             yield block.rows, residuals, jacobians
 
     def _evaluate_blocks(
-        self, u: FloatArray, weights: FloatArray
+        self, u: FloatArray, weights: FloatArray, curvature: bool = True
     ) -> Iterator[tuple[Block, tuple[Any, ...]]]:
         """Yield each block of samples with the arguments that `Sums.add_samples` needs for it."""
+        how = {"clamped": self.clamped, "extended": self.extended, "curvature": curvature}
         for block in self.blocks(len(u)):
+            factors = self.factors and [
+                double_precision.to_array(own[block.rows]) for own in self.factors
+            ]
+            if self.recorded and type(block) is Block:
+                constant = self._find_constant_columns(block, u)
+                columns, *terms = evaluate_recorded(
+                    block,
+                    self.columns,
+                    self.space.to_parameters(u),
+                    self._compute_column_factors(weights),
+                    constant=constant[0],
+                    factors=factors,
+                    **how,
+                )
+                T = constant[1] if constant[0] else self._stack_columns(block, u, columns)
+                yield block, self._convert_terms(block, T, *terms)
+                continue
             columns = self._evaluate_columns(block, u)
-            squares, moments, grams = [], [], []
+            squares: list[JitFloat] = []
+            moments: list[JitFloat] = []
+            grams: list[JitFloat] = []
             for group in self.groups:
-                own = []
                 model = self._evaluate_model(block, columns, weights[:, group])
-                for c, value in zip(group, model, strict=True):
-                    difference, slope = self.evaluate_difference(block, value, c)
-                    importance = block.importance
-                    if self.factors is not None:
-                        factors = double_precision.to_array(self.factors[c][block.rows])
-                        importance = importance * factors
-                    own.append(importance * dr.square(difference))
-                    moments.append(importance * difference * slope)
-                    grams.append(importance * slope * slope)
-                squares.append(sum(own))
+                own = compute_terms(block, model, group, factors=factors, **how)
+                squares.append(sum(own[0]))
+                moments += own[1]
+                grams += own[2][: 0 if grams and shares_curvature(block, factors) else None]
                 self._evaluate_channel_group(columns, squares, moments, grams)
             yield block, self._evaluate_block(block, u, columns, squares, moments, grams)
 
@@ -233,14 +263,13 @@ class Problem:
         self, block: Block, columns: list[JitFloat], weights: FloatArray
     ) -> list[JitFloat]:
         """Return the model's BRDF at the samples of a block, a Dr.Jit array for each channel."""
+        spread = block.repeat_for_samples(self._compute_column_factors(weights))
+        return mix_columns(columns[: len(self.columns.lobes)], spread)
+
+    def _compute_column_factors(self, weights: FloatArray) -> FloatArray:
+        """Return the factors of the model's values, (points, channels · values), from `weights`."""
         factors = weights[:, :, self.columns.lobes] ** self.columns.powers
-        points, channels, values = factors.shape
-        spread = block.repeat_for_samples(factors.reshape(points, -1))
-        mixed = []
-        for c in range(channels):
-            own = spread[c * values : (c + 1) * values]
-            mixed.append(sum(f * column for f, column in zip(own, columns, strict=False)))
-        return mixed
+        return factors.reshape(len(factors), -1)
 
     def _raise_if_not_finite(self, u: FloatArray, weights: FloatArray | None = None) -> None:
         """Raise a `BrdfkitError` that names a sample at which the loss is not finite, if any.
@@ -272,10 +301,41 @@ class Problem:
         """
         total = sum(squares)
         dr.eval(columns, total, moments, weights)
-        values = [block.split_by_point(column) for column in columns]
-        values = require_finite_columns(self.columns, values, block, self.space, u)
+        T = self._stack_columns(block, u, columns)
+        return self._convert_terms(block, T, total, moments, weights)
+
+    def _find_constant_columns(
+        self, block: Block, u: FloatArray
+    ) -> tuple[list[JitFloat], FloatArray]:
+        """Return the columns of a model without shape parameters, if they are kept, as two arrays.
+
+        They are kept for a block with all samples at one point, so that they are evaluated once.
+        Otherwise the list is empty.
+        """
+        if self.space.names or block.count > 1 or len(block.wi.x) < len(self.samples.wi):
+            return [], np.zeros((1, 0, 0))
+        if self._constant is None:
+            columns = self._evaluate_columns(block, u)
+            dr.eval(columns)
+            self._constant = columns, self._stack_columns(block, u, columns)
+        return self._constant
+
+    def _stack_columns(self, block: Block, u: FloatArray, columns: list[JitFloat]) -> FloatArray:
+        """Return evaluated columns of a block as one array (points, columns, samples), finite."""
+        T = np.stack([block.split_by_point(column) for column in columns], axis=1)
+        return require_finite_columns(self.columns, T, block, self.space, u)
+
+    def _convert_terms(
+        self,
+        block: Block,
+        T: FloatArray,
+        total: JitFloat,
+        moments: list[JitFloat],
+        weights: list[JitFloat],
+    ) -> tuple[Any, ...]:
+        """Return evaluated arrays of a block as NumPy arrays, for `Sums.add_samples`."""
         return (
-            values,
+            T,
             block.split_by_point(total),
             [block.split_by_point(m) for m in moments],
             [block.split_by_point(w) for w in weights],

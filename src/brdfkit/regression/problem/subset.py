@@ -32,7 +32,9 @@ def draw_subset(
     The weights of the drawn samples grow to stand for all.
     """
     n = len(influence)
-    share = 0.5 / n + 0.5 * influence / (influence.sum() or 1.0)
+    share = 0.5 * influence
+    share /= influence.sum() or 1.0
+    share += 0.5 / n
     share /= share.sum()
     order = _sort_by_theta_h(samples)
     heights = np.cumsum(share if order is None else share[order])
@@ -48,10 +50,9 @@ def _sort_by_theta_h(samples: Samples) -> IntArray | None:
 
     Return None if they are already sorted, like the samples of a table.
     """
-    if samples.cells is not None:  # one sample for each half vector of a table shows the order
-        first = np.flatnonzero(np.diff(samples.cells[0], prepend=-1))
-        if _is_decreasing(cos_theta_h(samples.wi[first], samples.wo[first])):
-            return None
+    first = samples.half_vector_starts  # one sample for each half vector shows the order
+    if first is not None and _is_decreasing(cos_theta_h(samples.wi[first], samples.wo[first])):
+        return None
     cosine = cos_theta_h(samples.wi, samples.wo)
     return None if _is_decreasing(cosine) else np.argsort(-cosine, kind="stable")
 

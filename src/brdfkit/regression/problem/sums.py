@@ -17,6 +17,8 @@ from brdfkit.regression.problem.columns import Columns
 
 # Columns are multiplied in parts of this many numbers, which fit into the processor's cache
 PART_SIZE = 2**16
+# From this number of columns on, products with themselves save time by their symmetry
+MANY_COLUMNS = 16
 
 
 @dataclass(eq=False)
@@ -47,26 +49,38 @@ class Sums:
     @np.errstate(invalid="ignore")  # callers use `is_finite`, and raise a clearer error
     def add_samples(
         self,
-        columns: list[FloatArray],
+        columns: FloatArray,
         squares: FloatArray,
         moments: list[FloatArray],
         weights: list[FloatArray],
     ) -> None:
         """Add n samples to the sums, with the symbols that the class explains.
 
-        `columns`: each column of T as an array (points, n); `squares`: w d², summed over channels,
-        (points, n); `moments`, `weights`: w d d' and w d'², an array (points, n) for each channel.
+        `columns`: the columns T (points, columns, n); `squares`: w d², summed over channels,
+        (points, n); `moments`, `weights`: w d d' and w d'², an array (points, n) for each channel,
+        or one of `weights` for all channels.
         """
-        points, n = squares.shape
+        points, count, n = columns.shape
         self.error += squares.sum(axis=1)
-        step = max(PART_SIZE // (points * len(columns)), 64)
+        step = max(PART_SIZE // (points * count), 64)
         for start in range(0, n, step):
             part = slice(start, start + step)
-            T = np.stack([column[:, part] for column in columns], axis=1)
-            for c, (moment, weight) in enumerate(zip(moments, weights, strict=True)):
+            T = columns[:, :, part]
+            for c, moment in enumerate(moments):
                 self.moment[:, c] += (T @ moment[:, part, None])[:, :, 0]
-                if self.gram is not None:
-                    self.gram[:, c] += (T * weight[:, None, part]) @ T.transpose(0, 2, 1)
+            if self.gram is None:
+                continue
+            for c, weight in enumerate(weights):
+                own = slice(c, c + 1) if len(weights) > 1 else slice(None)
+                self.gram[:, own] += _multiply_columns(T, weight[:, part])[:, None]
+
+
+def _multiply_columns(T: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the products T w Tᵀ (points, k, k) of k columns T (points, k, n), w (points, n)."""
+    if T.shape[1] < MANY_COLUMNS or weight.min() < 0:
+        return np.asarray((T * weight[:, None]) @ T.transpose(0, 2, 1))
+    rooted = T * np.sqrt(weight)[:, None]
+    return np.asarray(rooted @ rooted.transpose(0, 2, 1))  # BLAS computes half of it
 
 
 def solve_weights(columns: Columns, sums: Sums, limits: FloatArray) -> FloatArray:

@@ -85,24 +85,29 @@ class RobustProblem:
     def _find_leverages(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return the leverages (n,) of the samples in each channel, for the lobes' weights.
 
-        They are exact, or with a part of the samples, estimated from the part.
+        They are exact, or with a part of the samples, estimated from the part. Under a linear loss
+        they are equal in all channels.
         """
-        if self.part is self.problem:
-            blocks = [own for _, own in _iterate_weight_derivatives(self.problem, u, weights)]
-            return [
+        problem = self.problem
+        channels = slice(0, 1 if problem.linear else None)
+        if self.part is problem:
+            blocks = [own for _, own in _iterate_weight_derivatives(problem, u, weights, channels)]
+            found = [
                 compute_leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)
             ]
+            return found * (problem.channels // len(found))
         # The part's samples have larger weights, which stand for all; so its Gram matrices do, too
-        blocks = [own for _, own in _iterate_weight_derivatives(self.part, u, weights)]
+        blocks = [own for _, own in _iterate_weight_derivatives(self.part, u, weights, channels)]
         inverses = []
         for own in zip(*blocks, strict=True):
             gram = sum(columns @ columns.T for columns in own)
             inverses.append(np.linalg.pinv(gram, hermitian=True))
-        all_leverages: list[FloatArray] = [np.empty(len(self.problem.samples.wi)) for _ in inverses]
-        for rows, own_columns in _iterate_weight_derivatives(self.problem, u, weights):
-            for h, inverse, columns in zip(all_leverages, inverses, own_columns, strict=True):
-                h[rows] = np.minimum((columns * (inverse @ columns)).sum(axis=0), 0.9999)
-        return all_leverages
+        found = [np.empty(len(problem.samples.wi)) for _ in inverses]
+        for rows, own_columns in _iterate_weight_derivatives(problem, u, weights, channels):
+            for h, inverse, columns in zip(found, inverses, own_columns, strict=True):
+                lever = np.einsum("an,an->n", columns, inverse @ columns)
+                h[rows] = np.minimum(lever, 0.9999)
+        return found * (problem.channels // len(found))
 
     def use_all_samples(self) -> None:
         """Compute Hessians from all samples from now on, instead of a part of them."""
@@ -205,32 +210,29 @@ class RobustProblem:
         g is the gradient of the weighted squared loss, s the scale of the residuals in a channel,
         and z the vector of k parameters. `ratios`: scaled residuals (n,) in each channel.
         """
-        of_gradient, of_scale = [], []
-        for c, (r, scale) in enumerate(zip(ratios, scales, strict=True)):
-            r = r[self.rows]
-            of_gradient.append(
-                self._compute_gradient(
-                    point, c, self.function(r) - self._differentiate_weighted_residual(r)
-                )
-            )
-            of_scale.append(
-                self._compute_gradient(point, c, self._weigh_samples_at_median(c, r, scale))
-            )
-        return np.array(of_gradient).T, np.array(of_scale)
+        inner = [r[self.rows] for r in ratios]
+        changes = [self.function(r) - self._differentiate_weighted_residual(r) for r in inner]
+        medians = [
+            self._weigh_samples_at_median(c, *pair)
+            for c, pair in enumerate(zip(inner, scales, strict=True))
+        ]
+        of_gradient, of_scale = (
+            self._compute_channel_gradients(point, factors) for factors in (changes, medians)
+        )
+        return of_gradient.T, of_scale
 
     def find_best_step(self, hessian: FloatArray, gradient: FloatArray, point: Point) -> FloatArray:
         """Return the step (k,) that minimises a quadratic function within the bounds."""
         z = point.to_vector()
         return minimise_in_box(hessian[None], gradient[None], self.low - z, self.high - z)[0]
 
-    def _compute_gradient(self, point: Point, channel: int, factors: FloatArray) -> FloatArray:
-        """Return the gradient (k,) of the squared loss of one channel, from the part.
+    def _compute_channel_gradients(self, point: Point, factors: list[FloatArray]) -> FloatArray:
+        """Return the gradient of each channel's squared loss (channels, k), from the part.
 
-        `factors` (n,): weights of the part's samples.
+        `factors`: weights (n,) of the part's samples in each channel.
         """
-        every = [0 * factors for _ in self.levers]
-        every[channel] = factors
-        return self._expand_weighted_problem(self.part, point, every, curvature=False).gradient[0]
+        here = self._expand_weighted_problem(self.part, point, factors, curvature=False)
+        return here.split_gradient()[0]
 
     def _weigh_samples_at_median(self, channel: int, r: FloatArray, scale: float) -> FloatArray:
         """Return weights (n,) of the part's samples for the gradient of the scale of the noise.
@@ -268,11 +270,11 @@ class RobustProblem:
 
 
 def _iterate_weight_derivatives(
-    problem: Problem, u: FloatArray, weights: FloatArray
+    problem: Problem, u: FloatArray, weights: FloatArray, channels: slice
 ) -> Iterator[tuple[slice, list[FloatArray]]]:
     """Yield each block's sample indices, and derivatives of residuals with respect to lobe weights.
 
-    The derivatives are arrays (lobes, samples) by channel.
+    The derivatives are arrays (lobes, samples), for some of the `channels`.
     """
-    for rows, _, jacobians in problem.iterate_jacobians(u, weights):
+    for rows, _, jacobians in problem.iterate_jacobians(u, weights, channels):
         yield rows, [jacobian[u.shape[1] :] for jacobian in jacobians]

@@ -31,8 +31,11 @@ from brdfkit.regression.robust.problem import Point, RobustProblem
 SMALLEST_CURVATURE = 0.02
 # Largest number of passes
 PASSES = 150
-# With more samples than this, the search starts on a part with half as many
+# With more samples than this, the search starts on parts of these sizes, one after the other
 MANY_SAMPLES = 80_000
+PARTS = 8_000, 40_000
+# The passes on fewer samples than this for each lobe might go in cycles, and are left out
+SAMPLES_PER_LOBE = 400
 # Passes have converged if the next would change the fitted values by less than this share of their
 # standard deviation
 SETTLED = 3e-7
@@ -245,12 +248,18 @@ def search_robust_solution(
     """
     samples = problem.samples
     if len(samples.wi) > MANY_SAMPLES:
-        samples, rows = draw_subset(samples, np.ones(len(samples.wi)), MANY_SAMPLES // 2, rng)
-        part = problem.with_samples(samples)
-        first = RobustSearch(RobustProblem(part, u, weights, name))
-        start = first.run_search(u, weights, report, LOOSE, ordinary_passes=0).point
+        start = u, weights
+        for size in PARTS:  # each search starts at the end of the search on fewer samples
+            if size < SAMPLES_PER_LOBE * weights.shape[2]:
+                continue
+            chosen, rows = draw_subset(samples, np.ones(len(samples.wi)), size, rng)
+            part = problem.with_samples(chosen)
+            first = RobustSearch(RobustProblem(part, u, weights, name))
+            end = first.run_search(*start, report, LOOSE, ordinary_passes=0)
+            if end.change <= LOOSE or size == PARTS[-1]:
+                start = end.point.u, end.point.weights
         robust = RobustProblem(problem, u, weights, name, part, rows)
-        end = RobustSearch(robust).run_search(start.u, start.weights, report, ordinary_passes=0)
+        end = RobustSearch(robust).run_search(*start, report, ordinary_passes=0)
     else:
         robust, passes = RobustProblem(problem, u, weights, name), 0
         if robust.is_linear:  # mostly the search then finds that it starts at the solution

@@ -31,12 +31,14 @@ SMALLEST_DAMPING, LARGEST_DAMPING = 1e-15, 1e9
 class Search:
     """The result of several searches that ran side by side.
 
-    `ends`: expansion of the squared loss E² about the last point of each search; `converged`:
+    `ends`: expansion of the squared loss E² about the last point of each search; `corrections`
+    (points, n, n): estimates of the terms that its Gauss-Newton Hessians leave out; `converged`:
     whether each search converged (points,); `evaluations`: number of evaluations of E², all
     searches together.
     """
 
     ends: Expansion
+    corrections: np.ndarray
     converged: np.ndarray
     evaluations: int
 
@@ -63,6 +65,7 @@ def levenberg_marquardt(
     iterations: int,
     tolerance: float = 1e-6,
     damping: float = 1e-3,
+    corrections: FloatArray | None = None,
 ) -> Search:
     """Search for the least squared loss E² from several start points, and return the `Search`.
 
@@ -70,7 +73,8 @@ def levenberg_marquardt(
     shapes), `weights` (points, channels, lobes): the start points; `weight_limits` (2, lobes):
     lower and upper bounds of the weights; `iterations`: largest number of steps; `tolerance`: a
     search converges if its next step would lower E² by less than this share; `damping`: damping of
-    the first step.
+    the first step; `corrections` (points, n, n): those of the search that ended at the start
+    points, by default 0.
 
     A search also converges if its E² is only a rounding error compared with the worst start's. It
     ends without converging if it would not come below a search that has converged. On Ctrl-C
@@ -80,7 +84,7 @@ def levenberg_marquardt(
     points, shapes = now.u.shape
     channels = weights.shape[1]
     low, high = make_point_limits(shapes, channels, weight_limits)
-    correction = np.zeros_like(now.hessian)
+    correction = np.zeros_like(now.hessian) if corrections is None else corrections.copy()
     dampings, growth, evaluations = np.full(points, damping), np.full(points, 4.0), points
     exact = ROUNDING * now.error.max()
     converged = now.error <= exact
@@ -91,7 +95,7 @@ def levenberg_marquardt(
             (rows,) = np.nonzero(searching)
             if not len(rows):
                 break
-            here = now.select_points(rows)
+            here = now.select_points(searching)
             H, g = _add_hessian_correction(here.hessian, correction[rows]), here.gradient
             diagonal = H.diagonal(axis1=1, axis2=2)
             floor = 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300
@@ -143,7 +147,7 @@ def levenberg_marquardt(
             searching &= ~converged
     except KeyboardInterrupt:
         raise Interrupted(now) from None
-    return Search(now, converged, evaluations)
+    return Search(now, correction, converged, evaluations)
 
 
 def _update_hessian_correction(

@@ -99,30 +99,37 @@ def search_from_starts(
         u, weights = _add_unclamped_starts(first, u, weights)
     rounds = MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS
     rounds = rounds if u.size or len(u) > 1 else ()  # without shapes there is nothing to choose
+    corrections = None
     total = len(rounds) + len(problems)
     # All starts take a few steps, the best of them a few more, and so on
     for number, (count, steps) in enumerate(rounds):
         report(number, total)
-        search = levenberg_marquardt(first.expand_loss, u, weights, first.weight_limits, steps)
+        search = levenberg_marquardt(
+            first.expand_loss, u, weights, first.weight_limits, steps, corrections=corrections
+        )
         evaluations += search.evaluations
-        ends = search.ends.select_points(search.find_best_ends(count))
+        rows = search.find_best_ends(count)
+        ends, corrections = search.ends.select_points(rows), search.corrections[rows]
         u, weights = ends.u, ends.weights
     if rounds:
         revived = revive_zero_weights(first, ends.select_points([0]), starts)
         u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
+        new = np.zeros((len(u) - len(rows), *search.corrections.shape[1:]))
+        corrections = np.concatenate([search.corrections[rows], new])
     for number, problem in enumerate(problems):
         report(len(rounds) + number, total)
         if number:
             rows = search.find_best_ends(FINALISTS)
             error = search.ends.error
-            ends = search.ends.select_points(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
+            rows = rows[error[rows] <= (1 + CLOSE) * error[rows[0]]]
+            ends, corrections = search.ends.select_points(rows), search.corrections[rows]
             u, weights = ends.u, ends.weights
         # A model clamped at 0 takes many steps along kinks of the loss; on a part they cost less
         tight = MANY_SAMPLES_FACTOR * tolerance
         loose = tight if problem.clamped else max(LOOSE, tight)
         limit = loose if problem is not last else tight if number else tolerance
         part = problems[number - 1] if number else None
-        search, count = _search_problem(problem, part, u, weights, iterations, limit)
+        search, count = _search_problem(problem, part, u, weights, corrections, iterations, limit)
         evaluations += count
     report(total, total)
     best = search.find_best_ends(FINALISTS)
@@ -150,26 +157,29 @@ def _search_problem(
     part: Problem | None,
     u: FloatArray,
     weights: FloatArray,
+    corrections: FloatArray | None,
     iterations: int,
     tolerance: float,
 ) -> tuple[Search, int]:
     """Search for the least squared loss; return the `Search` and the number of evaluations.
 
-    `u`, `weights`: start points, as in `levenberg_marquardt`; `part`: None, or the problem on a
-    part of the samples whose ends are the start points.
+    `u`, `weights`, `corrections`: start points, as in `levenberg_marquardt`; `part`: None, or the
+    problem on a part of the samples whose ends are the start points.
     """
     evaluations, damping = 0, 1e-4
     if part is not None:
         # The Hessian of a part is nearly the Hessian of all samples, and takes less time
         expand, damping = _borrow_hessian_from_part(problem, part), 1e-7
         search = levenberg_marquardt(
-            expand, u, weights, problem.weight_limits, FEW_STEPS, tolerance, damping
+            *(expand, u, weights, problem.weight_limits, FEW_STEPS, tolerance, damping, corrections)
         )
         if search.converged.all():
             return search, search.evaluations
         u, weights, evaluations = search.ends.u, search.ends.weights, search.evaluations
+        corrections = search.corrections
     search = levenberg_marquardt(
-        problem.expand_loss, u, weights, problem.weight_limits, iterations, tolerance, damping
+        *(problem.expand_loss, u, weights, problem.weight_limits),
+        *(iterations, tolerance, damping, corrections),
     )
     return search, evaluations + search.evaluations
 
