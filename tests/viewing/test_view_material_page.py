@@ -261,15 +261,18 @@ def test_a_fit_moves_and_marks_the_sliders_and_shows_errors(page):
 
 
 def test_a_pin_has_its_error_and_the_heads_of_the_table_sort(page):
-    page.get_by_role("button", name="Pin", exact=True).click()
+    pin = page.get_by_role("button", name="Pin", exact=True)
+    pin.click()
     type_number(page, "α_u", 0.5)
-    page.get_by_role("button", name="Pin", exact=True).click()
-    page.get_by_text("is best by cbrt").wait_for()
     entry = page.get_by_role("list", name="Pins").get_by_role("listitem").first
     row = page.get_by_role("row", name="1 ggx")
-    assert entry.locator(".error").inner_text() == row.get_by_role("cell").nth(2).inner_text()
+    row.wait_for()
     head = page.get_by_role("columnheader", name="plain").get_by_role("button")
     head.focus()
+    pin.evaluate("button => button.click()")  # its errors replace the head that has the focus
+    page.get_by_role("row", name="2 ggx").wait_for()
+    page.get_by_text("is best by cbrt").wait_for()
+    assert entry.locator(".error").inner_text() == row.get_by_role("cell").nth(2).inner_text()
     page.keyboard.press("Enter")
     page.keyboard.press("Enter")
     sorted_by = page.locator("th[aria-sort=descending]")

@@ -56,7 +56,10 @@ function createErrorTable(shown) {
   }
   function draw() {
     const rows = content.rows.length ? [makeErrorTable(content, order, shown, sort)] : [];
+    const findHeads = () => [...element.querySelectorAll("thead button")];
+    const focused = findHeads().findIndex((head) => head.matches(":focus"));
     element.replaceChildren(...rows);
+    findHeads()[focused]?.focus(); // new errors of a pin replace the head under the keyboard's focus
   }
   function fill(now) {
     const column = now.columns.findIndex(([name]) => name === now.loss);
