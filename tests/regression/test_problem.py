@@ -16,7 +16,7 @@ from brdfkit.regression import losses
 from brdfkit.regression.problem.folding import fold_problem
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import draw_subset
+from brdfkit.regression.problem.subset import Shares, draw_subset
 from brdfkit.regression.robust.reweighting import WEIGHTS, compute_leverages
 
 MODELS_WITHOUT_SUMS = [name for name in bk.models() if name != "mixture"]
@@ -112,10 +112,10 @@ def test_a_part_stands_for_the_whole():
     """Its weights make up for what is left out: sums over it are those over all, on average."""
     samples = table(shape=(24, 12, 24))
     rng = np.random.default_rng(0)
-    influence = samples.values.sum(axis=1) ** 4
+    shares = Shares.from_influence(samples, samples.values.sum(axis=1) ** 4)
     sums = []
     for _ in range(50):
-        part, rows = draw_subset(samples, influence, 300, rng)
+        part, rows = draw_subset(samples, shares, 300, rng)
         np.testing.assert_array_equal(part.values, samples.values[rows])
         sums.append(part.weight @ part.values)
     expected = samples.weight @ samples.values

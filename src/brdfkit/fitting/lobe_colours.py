@@ -13,6 +13,7 @@ from brdfkit.core.names import join_words
 from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.samples import Samples
+from brdfkit.model.samples.cells import copy_columns
 from brdfkit.model.samples.measures import compute_measure
 
 # A colour is pure if its smallest channel is below the share PURE of its largest; two colours have
@@ -71,16 +72,16 @@ def note_on_grazing_colour(data: Measured, samples: Samples, fitted: Model) -> l
     largest = np.degrees(np.arccos(np.clip(cosine.min(), 0, 1)))
     if largest < OBLIQUE:
         return []
-    rim = samples.at(np.flatnonzero(cosine < np.cos(np.radians(largest - RIM))))
-    light = rim.weight * rim.wi[:, 2] * rim.wo[:, 2]
-    if data.is_table:  # small cells in the highlight must not count as much as large ones
-        light = light * compute_measure(rim.extents, "solid_angle")
-    each = light * np.maximum(rim.values, 0).sum(axis=1)
+    rim = np.flatnonzero(cosine < np.cos(np.radians(largest - RIM)))
+    wi, wo, values = (copy_columns(w, rim) for w in (samples.wi, samples.wo, samples.values))
+    light = samples.weight[rim] * wi[:, 2] * wo[:, 2]
+    if data.is_table and samples.extents is not None:
+        # Small cells in the highlight must not count as much as large ones
+        light = light * compute_measure(samples.extents[rim], "solid_angle")
+    each = light * np.maximum(values, 0).sum(axis=1)
     if not each.sum() or each.sum() ** 2 < SPREAD * (each**2).sum():
         return []  # the rim is black, or only a few samples are bright
-    ours, theirs = (
-        _normalise_colour(light @ values) for values in (fitted.eval(rim.wi, rim.wo), rim.values)
-    )
+    ours, theirs = (_normalise_colour(light @ colours) for colours in (fitted.eval(wi, wo), values))
     if np.abs(ours - theirs).max() < OFF:
         return []
     modelled, measured = (" : ".join(f"{100 * s:.0f}" for s in shares) for shares in (ours, theirs))

@@ -146,7 +146,7 @@ def compute_certainty(
         return nothing
     shares = np.ones(len(counted))
     if len(counted) > MANY_SAMPLES and rng is not None:
-        part, rows = draw_subset(problem.samples, problem.black_squares, MANY_SAMPLES // 2, rng)
+        part, rows = draw_subset(problem.samples, problem.shares, MANY_SAMPLES // 2, rng)
         whole, problem = problem.importance[rows], problem.with_samples(part)
         shares = whole / np.where(problem.importance > 0, problem.importance, 1)
         if passes:

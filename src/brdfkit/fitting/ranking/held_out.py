@@ -22,7 +22,7 @@ from brdfkit.model.evaluation import make_model
 from brdfkit.model.samples import Samples
 from brdfkit.regression import Loss, Picture, losses, regress
 from brdfkit.regression.losses.loss import sum_squared_differences
-from brdfkit.regression.problem.subset import draw_subset
+from brdfkit.regression.problem.subset import Shares, draw_subset
 from brdfkit.regression.regression import Solution
 
 # Of larger measurements this number of samples is drawn at random
@@ -67,7 +67,9 @@ class HeldOut:
         if len(samples.wi) > SAMPLE_LIMIT:
             black = sum_squared_differences(of_samples, np.zeros_like(samples.values), samples)
             parts = of_samples.importance(samples) * black
-            samples, _ = draw_subset(samples, parts, SAMPLE_LIMIT, rng)
+            samples, _ = draw_subset(
+                samples, Shares.from_influence(samples, parts), SAMPLE_LIMIT, rng
+            )
         blocks = assign_blocks(samples.wi, samples.wo, anisotropic)
         own = assign_folds(blocks, folds, rng, "samples")
         importance = of_samples.importance(samples)

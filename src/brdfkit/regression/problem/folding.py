@@ -100,14 +100,15 @@ class FoldedProblem:
             for w in (problem.samples.wi, problem.samples.wo)
         )
         lobes, channels = len(self.columns.lobes), self.channels
-        sums = np.zeros((len(starts), lobes + channels, lobes + channels))
+        sums, black = np.zeros((len(starts), lobes + channels, lobes + channels)), []
         for block in problem.blocks(1):
             inside = starts[(starts > block.rows.start) & (starts < block.rows.stop)]
             first = int(np.searchsorted(starts, block.rows.start, "right")) - 1
             edges = np.concatenate([[block.rows.start], inside]) - block.rows.start
-            sums[first : first + len(edges)] += _sum_products_by_node(
-                self._evaluate_constants(block), edges
-            )
+            constants = self._evaluate_constants(block)
+            sums[first : first + len(edges)] += _sum_products_by_node(constants, edges)
+            black.append(np.square(constants[lobes:]).sum(axis=0))
+        problem.black_squares = np.concatenate(black)  # a by-product, which it need not compute
         by_node = sums.transpose(1, 2, 0)
         values = [*range(lobes), *(value for value, _ in self.columns.slopes)]
         self.grams = by_node[np.ix_(values, values)]

@@ -214,5 +214,5 @@ def _draw_samples(
     """
     if len(samples.wi) <= 2 * size:
         return samples
-    part, _ = draw_subset(samples, Problem(model, samples, LOG, space).black_squares, size, rng)
+    part, _ = draw_subset(samples, Problem(model, samples, LOG, space).shares, size, rng)
     return part

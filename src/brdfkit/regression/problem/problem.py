@@ -32,6 +32,7 @@ from brdfkit.regression.problem.kernel import (
 )
 from brdfkit.regression.problem.not_finite import require_finite_columns, require_finite_loss
 from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.subset import Shares
 from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_weights
 
 
@@ -96,6 +97,11 @@ class Problem:
             black = np.zeros((1, self.channels, self.weight_limits.shape[1]))
             self._raise_if_not_finite(np.full((1, len(self.space.names)), 0.5), black)
         return contributions
+
+    @cached_property
+    def shares(self) -> Shares:
+        """The probabilities with which samples are drawn if a part of them has to do."""
+        return Shares.from_influence(self.samples, self.black_squares)
 
     def estimate_weights(self, u: FloatArray, evenly: bool = False) -> FloatArray:
         """Return weights (points, channels, lobes) to start from, given coordinates `u`.
@@ -179,7 +185,7 @@ class Problem:
             ]
             own = zip(change[channels], roots[channels], strict=True)
             jacobians = [
-                (columns[0] if np.array_equal(by, unit) else by @ columns[0]) * root
+                (columns[0][: len(by)] if np.array_equal(by, unit) else by @ columns[0]) * root
                 for by, root in own
             ]
             yield block.rows, residuals, jacobians

@@ -3,7 +3,9 @@
 Many samples are reduced to a part of them, and the channels of a spectrum to a few bands.
 """
 
-from dataclasses import replace
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,28 +23,43 @@ def average_to_bands(samples: Samples) -> Samples:
     return replace(samples, values=np.stack([band.mean(axis=1) for band in bands], axis=1))
 
 
-def draw_subset(
-    samples: Samples, influence: FloatArray, size: int, rng: np.random.Generator
-) -> tuple[Samples, IntArray]:
-    """Draw about `size` of the `samples`, and return them with their indices.
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """The probabilities with which samples are drawn, by the order of θ_h, their half angle.
 
-    Half of them are drawn uniformly, half in proportion to their `influence` (n,) on the fit, so
-    that a highlight keeps its influence even if few samples show it. They are drawn at even steps
-    in the order of θ_h, the angle of the half vector, from a random start by the generator `rng`.
-    The weights of the drawn samples grow to stand for all.
+    `of_samples` (n,): share of each sample; `order` (n,): indices that sort samples by θ_h, or None
+    if they are sorted; `sums` (n,): sums of the shares in this order, up to each sample.
     """
-    n = len(influence)
-    share = 0.5 * influence
-    share /= influence.sum() or 1.0
-    share += 0.5 / n
-    share /= share.sum()
-    order = _sort_by_theta_h(samples)
-    heights = np.cumsum(share if order is None else share[order])
-    steps = (np.arange(size) + rng.random()) / size * heights[-1]
-    rows, counts = np.unique(np.searchsorted(heights, steps), return_counts=True)
-    rows = rows if order is None else order[rows]
+
+    of_samples: FloatArray
+    order: IntArray | None
+    sums: FloatArray
+
+    @classmethod
+    def from_influence(cls, samples: Samples, influence: FloatArray) -> Shares:
+        """Return shares that are half uniform and half in proportion to an `influence` (n,)."""
+        share = 0.5 * influence
+        share /= influence.sum() or 1.0
+        share += 0.5 / len(share)
+        share /= share.sum()
+        order = _sort_by_theta_h(samples)
+        return cls(share, order, np.cumsum(share if order is None else share[order]))
+
+
+def draw_subset(
+    samples: Samples, shares: Shares, size: int, rng: np.random.Generator
+) -> tuple[Samples, IntArray]:
+    """Draw about `size` of the `samples` with these `shares`; return them with their indices.
+
+    A highlight keeps its influence on a fit even if few samples show it. The samples are drawn at
+    even steps in the order of θ_h, the angle of the half vector, from a random start by the
+    generator `rng`. The weights of the drawn samples grow to stand for all.
+    """
+    steps = (np.arange(size) + rng.random()) / size * shares.sums[-1]
+    rows, counts = np.unique(np.searchsorted(shares.sums, steps), return_counts=True)
+    rows = rows if shares.order is None else shares.order[rows]
     part = samples.at(rows)
-    return replace(part, weight=part.weight * counts / (size * share[rows])), rows
+    return replace(part, weight=part.weight * counts / (size * shares.of_samples[rows])), rows
 
 
 def _sort_by_theta_h(samples: Samples) -> IntArray | None:

@@ -22,7 +22,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.progress_bar import Progress
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import draw_subset
+from brdfkit.regression.problem.subset import Shares, draw_subset
 from brdfkit.regression.robust.linear import reweight_linear_model
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
@@ -248,11 +248,11 @@ def search_robust_solution(
     """
     samples = problem.samples
     if len(samples.wi) > MANY_SAMPLES:
-        start = u, weights
+        start, even = (u, weights), Shares.from_influence(samples, np.ones(len(samples.wi)))
         for size in PARTS:  # each search starts at the end of the search on fewer samples
             if size < SAMPLES_PER_LOBE * weights.shape[2]:
                 continue
-            chosen, rows = draw_subset(samples, np.ones(len(samples.wi)), size, rng)
+            chosen, rows = draw_subset(samples, even, size, rng)
             part = problem.with_samples(chosen)
             first = RobustSearch(RobustProblem(part, u, weights, name))
             end = first.run_search(*start, report, LOOSE, ordinary_passes=0)

@@ -73,7 +73,7 @@ def make_part_problems(whole: Problem, rng: np.random.Generator) -> list[Problem
     for size in PARTS[:1] if whole.clamped else PARTS:
         samples = problems[0].samples
         if 2 * size < len(samples.wi):
-            part, _ = draw_subset(samples, problems[0].black_squares, size, rng)
+            part, _ = draw_subset(samples, problems[0].shares, size, rng)
             problems.insert(0, whole.with_samples(part))
     return problems
 
