@@ -28,6 +28,6 @@ def render_batches(scene, batches, samples, seed=0):
     return np.array(mi.Color3f(radiance * weight)).reshape(3, batches, -1).mean(axis=2).T
 
 
-def mean_and_error(values):
+def mean_and_error(values, ddof=0):
     """The mean of values, those of batches along the first axis, and its standard error."""
-    return values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(values))
+    return values.mean(axis=0), values.std(axis=0, ddof=ddof) / np.sqrt(len(values))

@@ -39,7 +39,7 @@ def radiance(mi, bsdf, counts, spp=2**13):
             },
         }
     )
-    return mean_and_error(render_batches(scene, batches=16, samples=spp // 16))
+    return mean_and_error(render_batches(scene, batches=16, samples=spp // 16), ddof=1)
 
 
 MATERIALS = bk.models() | {
