@@ -100,7 +100,7 @@ def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
 def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
     """Mitsuba traces through the BSDFs of every scene, also of one that another thread frees."""
     seen = []
-    load_and_trace, trace = render_materials._load_and_trace_scenes, render_materials.trace_scenes
+    trace_here, trace = render_materials._trace_here, render_materials.trace_scenes
 
     def noted(loaded, *others):
         for scene in loaded.values():
@@ -108,12 +108,12 @@ def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
         return trace(loaded, *others)
 
     def counted(*args):
-        result = load_and_trace(*args)
+        result = trace_here(*args)
         assert [plugin() for plugin in seen] == [None, None]
         return result
 
     monkeypatch.setattr(render_materials, "trace_scenes", noted)
-    monkeypatch.setattr(render_materials, "_load_and_trace_scenes", counted)
+    monkeypatch.setattr(render_materials, "_trace_here", counted)
     bk.render(["ward", "ggx"], size=4, spp=1)
 
 

@@ -49,8 +49,8 @@ def render(
     scene: SceneLike = "ball",
     environment: str | Path | None = None,
     noise_floor: float | None = None,
-    seed: int = 0,
     client: Any = None,
+    seed: int = 0,
     progress: PictureProgress | None = None,
 ) -> Rendering:
     """Path-trace one or several materials in the same scene, with the same samples.
@@ -86,12 +86,12 @@ def render(
     noise_floor : float, optional
         The noise floor to reach by adding samples [dB, above 0]: the PSNR of the reference to
         itself with another seed. At 45 noise is hardly visible.
-    seed : int, default 0
-        Seed of the samples; equal seeds give equal pictures, up to the order in which threads sum
-        up (1e-6).
     client : distributed.Client, optional
         A cluster that renders in place of this process: its workers share the samples. Files of
         scenes, environment maps and plugins must have the same paths there.
+    seed : int, default 0
+        Seed of the samples; equal seeds give equal pictures, up to the order in which threads sum
+        up (1e-6).
     progress : callable, optional
         Called with (done, total) after each pass of a picture; with `noise_floor`, the total is an
         estimate that improves. A function with a parameter `pictures` also gets a function:

@@ -40,8 +40,8 @@ def rank(
     folds: int = 5,
     anisotropic: bool | None = None,
     max_angle: float = 80.0,
-    seed: int = 0,
     client: Any = None,
+    seed: int = 0,
     progress: Progress | None = None,
 ) -> Ranking:
     """Rank models by cross-validation on a measured material, and by pictures of their fits.
@@ -76,11 +76,11 @@ def rank(
         Whether ``alpha_v`` and similar parameters are searched, as for `fit`.
     max_angle : float, default 80
         Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out.
-    seed : int, default 0
-        Seed of the folds, the drawn samples and the starts; equal seeds give equal rankings.
     client : distributed.Client, optional
         A cluster that fits in place of this process, a task for each model. The files of your own
         models must have the same paths there.
+    seed : int, default 0
+        Seed of the folds, the drawn samples and the starts; equal seeds give equal rankings.
     progress : callable, optional
         Called with (fits done, fits in all).
 
