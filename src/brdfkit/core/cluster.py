@@ -140,7 +140,8 @@ def run_tasks(
     if len(kept.data) > SMALL:
         with dask.config.set({WARNING: "1 TB"}):
             kept = client.submit(_return_parcel, kept, key=(f"shared-{run}", ""))
-        client.replicate([kept])  # otherwise all tasks would first wait for the worker that has it
+        # Otherwise all tasks would be given to the one worker that has it
+        client.replicate([kept], n=max(1, min(len(tasks), len(client.nthreads()))))
     waiting = {submit(task, number): task for number, task in enumerate(tasks)}
     suspects: list[T] = []
     try:
