@@ -8,9 +8,10 @@ are of one run; seconds are of this machine.
 """
 
 import sys
-import time
 
 import numpy as np
+from performance.fits import make_full_table
+from performance.pictures import time_picture, time_pictures
 from rich.console import Console
 from rich.table import Table as Printed
 
@@ -19,50 +20,15 @@ from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences
 from brdfkit.checks.sampling import compute_weight_spreads
 from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.jit import llvm
-from brdfkit.model.samples import Table
 
-MERL = (90, 90, 180)
-ROUNDS = 5
-SIZE, SPP = 256, 64
 # The models of [Kurt 2007]; the other models come from later papers
 THESIS = [n for n, m in bk.models().items() if n != "mixture" and "[Kurt 2007" in str(read_page(m))]
-
-
-def make_full_table():
-    """Return a material that comes with brdfkit, at the resolution of a MERL file."""
-    table = Table(np.full((*MERL, 3), np.nan))
-    wi, wo = table.directions()
-    above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
-    table.values[above] = bk.load("car_paint").eval(wi[above], wo[above])
-    return bk.Measured.from_table(table.values, name="car_paint, full size")
 
 
 def time_fit(name, data, loss):
     """Return the seconds of a warm fit, the least of two."""
     bk.fit(data, name, loss=loss)
     return min(bk.fit(data, name, loss=loss).seconds for _ in range(2))
-
-
-def time_renderings(materials):
-    """Return the least seconds of a warm rendering, by material."""
-    import mitsuba as mi
-
-    from brdfkit.rendering.scenes.ball import ball
-
-    scenes = {name: mi.load_dict(ball(m, (SIZE, SIZE), SPP)) for name, m in materials.items()}
-    best = dict.fromkeys(scenes, np.inf)
-    for round_ in range(ROUNDS + 1):
-        for name, scene in scenes.items():
-            best[name] = min(best[name], _time_rendering(scene, round_))
-    return best
-
-
-def _time_rendering(scene, seed):
-    import mitsuba as mi
-
-    began = time.perf_counter()
-    np.array(mi.render(scene, spp=SPP, seed=seed))
-    return time.perf_counter() - began
 
 
 def time_compilation(bsdfs):
@@ -82,8 +48,8 @@ def time_compilation(bsdfs):
         "light": {"type": "constant"},
     }
     loaded = mi.load_dict(scene | balls)
-    first = _time_rendering(loaded, 0)
-    return first - _time_rendering(loaded, 1)
+    first = time_picture(loaded, 0)
+    return first - time_picture(loaded, 1)
 
 
 def main():
@@ -97,7 +63,7 @@ def main():
     materials["measured_table"] = bk.load("car_paint").scene_dict()
     compiled = {name: time_compilation([bsdf]) for name, bsdf in materials.items()}
     twelve = time_compilation([bk.models()[name]().scene_dict() for name in THESIS])
-    seconds = time_renderings(materials)
+    seconds = time_pictures(materials)
     data = make_full_table()
     columns = [f"std {d}°" for d in INCIDENCES]
     losses = [f"fit {loss} [s]" for loss in bk.losses.named.by_sample]
