@@ -47,7 +47,7 @@ lint: $(VENV)/.ready
 
 bench: $(VENV)/.ready
 	DRJIT_CACHE_DIR=$$(mktemp -d) $(RUN)/python benchmarks/model_times.py
-	$(RUN)/python benchmarks/fit_times.py
+	$(RUN)/python docs/tools/make_performance.py
 
 docs: $(VENV)/.ready
 	$(RUN)/python docs/tools/make_models.py
