@@ -41,7 +41,7 @@ def make_full_table():
 
 
 def fit_ward_duer_with_scipy(samples):
-    """Return α of `ward_duer`, fitted by "cosine" in a few lines of NumPy, from a start of SLSQP."""
+    """Return α of `ward_duer`, fitted by "cosine" in a few lines, from one start of SLSQP."""
     h = samples.wi + samples.wo
     tan2 = (h[:, 0] ** 2 + h[:, 1] ** 2) / h[:, 2] ** 2
     cos_i, cos_o = samples.wi[:, 2], samples.wo[:, 2]
