@@ -18,6 +18,9 @@ machine; **ratios** are of one run, in which what is compared takes turns, each 
 own, and the least of several times counts.{before}"""
 BEFORE = """ *Before* is the version `{commit}`: `git worktree add FOLDER {commit}`, and
 `--before FOLDER`."""
+PICTURE = """![Seconds over samples, triangles, voxels and lamps](performance.png)
+
+*How the cost grows; the tables below say of what.*"""
 BARS = """*Bar* is what a figure was, and what it should be at most; **bold** figures are
 above it."""
 FITS = """Seconds of warm fits of a full table, with the resolution of a MERL file, and of smaller
@@ -32,7 +35,8 @@ TABLES = """Times of a path-traced picture of measured materials, in units of on
 Bar: {was} → {bar}."""
 SUITE = """Seconds of the tests, by two processes."""
 SAMPLES = """Warm fits of `ggx` by the default loss to noisy values at random directions [s], and
-SciPy's fit of `ward_duer` to the same samples."""
+SciPy's fit of `ward_duer` to the same samples. *First* is the first fit in a process, of which the
+kernels are found and the extents of the samples are measured."""
 TRIANGLES = """A picture of {side}² pixels of hills under a sun. *Rays* are Mitsuba's rays from the
 pixels to the sun, [ns] each; the others are pictures with a sample for each pixel, per pixel and in
 units of a ray: paths of two edges, and the integrator `shadow_map`, which renders its maps anew.
@@ -45,8 +49,8 @@ LAMPS = """A box on the ground under glowing balls, {side}² pixels of {spp} sam
 `distance_field`, which adds the light of all lamps, with their soft shadows, and Mitsuba's `path`,
 which takes one lamp at random for each sample. *First* is the first picture, of which the kernels
 have to be compiled."""
-CLUSTER = """What a task sends and receives on a Dask cluster; *tasks* are those of 100 materials
-and 15 models, *tasks/s* those of 100 workers. Made by `benchmarks/cluster.py`."""
+CLUSTER = """What the scheduler of a Dask cluster receives and sends for each task; *tasks/s* and
+*MB/s* are those of 100 workers. Measured by `benchmarks/cluster.py`."""
 
 
 def write_page(stored):
@@ -58,7 +62,8 @@ def write_page(stored):
 def make_page(stored):
     """Return the text of the page; sections that were not measured are left out."""
     before = BEFORE.format(commit=stored["before"]) if stored.get("before") else ""
-    parts = ["# Performance", INTRODUCTION.format(**stored["machine"], before=before), BARS]
+    introduction = INTRODUCTION.format(**stored["machine"], before=before)
+    parts = ["# Performance", introduction, PICTURE, BARS]
     for name, (title, make) in SECTIONS.items():
         if stored.get(name):
             parts += [f"## {title}", *make(stored[name])]
@@ -146,6 +151,7 @@ def make_samples_section(found):
         cells.append(
             (
                 f"{int(count):,}",
+                *(format_figure(told.get(name), "first") for name in ("before", "now")),
                 *(format_figure(told.get(name)) for name in ("before", "now")),
                 format_ratio(told.get("before"), told["now"]),
                 "" if now is None else format_number(1e9 * now / int(count)),
@@ -153,8 +159,8 @@ def make_samples_section(found):
                 format_ratio(told["now"], told.get("beside")),
             )
         )
-    head = "samples, before, now, times less, now [ns/sample], SciPy, now / SciPy"
-    return SAMPLES, make_table(head, cells)
+    head = "samples, first before, first now, before, now, times less, now [ns/sample], SciPy"
+    return SAMPLES, make_table(f"{head}, now / SciPy", cells)
 
 
 def make_triangles_section(found):
@@ -260,29 +266,34 @@ SECTIONS = {
 }
 # By section of the plot: its title, what grows, and the curves: their key, label
 CURVES = {
-    "samples": ("fits", "samples", {"before": "before", "now": "`ggx`", "beside": "SciPy"}),
+    "samples": ("fits", "samples", {"before": "before", "now": "ggx", "beside": "SciPy"}),
     "triangles": (
         "meshes",
         "triangles",
-        {"shadow_map": "`shadow_map`", "path": "`path`", "ray_test": "rays alone"},
+        {"shadow_map": "shadow_map", "path": "path", "ray_test": "rays alone"},
     ),
     "voxels": (
         "volumes",
         "voxels along an edge",
         {
-            "volpath": "`volpath`",
-            "single_scattering": "`single_scattering`",
-            "glow": "`emission_absorption`",
+            "volpath": "volpath",
+            "single_scattering": "single_scattering",
+            "glow": "emission_absorption",
         },
     ),
-    "lamps": ("lamps", "lamps", {"path": "`path`", "distance_field": "`distance_field`"}),
+    "lamps": ("lamps", "lamps", {"path": "path", "distance_field": "distance_field"}),
 }
+
+
+def format_count(n):
+    """Return a count in thousands or millions, as text."""
+    return f"{n // 10**6} M" if n >= 10**6 else f"{n // 1000} k" if n >= 1000 else f"{n}"
 
 
 def draw_growth(stored):
     """Return the figure: seconds over samples, triangles, voxels and lamps, both logarithmic."""
     shown = {name: parts for name, parts in CURVES.items() if stored.get(name)}
-    figure = make_figure(3.2 * max(len(shown), 1), 3.3)
+    figure = make_figure(3.4 * max(len(shown), 1), 3.3)
     for number, (name, (title, what, curves)) in enumerate(shown.items(), 1):
         axes = figure.add_subplot(1, len(shown), number)
         for colour, (key, label) in zip(COLOURS, curves.items(), strict=False):
@@ -290,8 +301,11 @@ def draw_growth(stored):
             points = [point for point in points if point[1] is not None]
             if points:
                 axes.plot(*zip(*points, strict=True), "o-", ms=4, color=colour, label=label)
+        counts = [int(n) for n in stored[name]]
         axes.set_xscale("log")
         axes.set_yscale("log")
+        axes.set_xticks(counts, [format_count(n) for n in counts])
+        axes.minorticks_off()
         axes.set_xlabel(what)
         style_axes(axes, title, "seconds" if number == 1 else "")
         axes.legend(frameon=False, fontsize=8)
